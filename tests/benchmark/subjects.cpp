@@ -193,15 +193,13 @@ class Examined {
 
   /// The places told, and those among the hidden effect's parts or of an effect of its class.
   static void count_places(const Diagnosis& d, const Hidden& hidden, SubjectSet& out) {
-    std::vector<const effects::Effect*> told;
-    for (const effects::PlacedEffect& e : d.missing) told.push_back(e.effect);
+    const auto tell = [&](const std::string& name, const std::optional<subject::Place>& place) {
+      out.told.push_back(name);
+      out.told_rightly += (place && within(*place, *hidden.effect.effect->place)) || holds(out.classes.front(), name);
+    };
+    for (const effects::PlacedEffect& e : d.missing) tell(e.effect->name, e.effect->place);
     if (d.unexplained)
-      for (const Localised& l : d.localised) told.push_back(l.effect.effect);
-    for (const effects::Effect* each : told) {
-      out.told.push_back(each->name);
-      out.told_rightly +=
-          (each->place && within(*each->place, *hidden.effect.effect->place)) || holds(out.classes.front(), each->name);
-    }
+      for (const Localised& l : d.localised) tell(l.effect ? l.effect->name : l.what, l.place);
   }
 
   static void count_intervals(const Diagnosis& d, const std::vector<Hidden>& hidden, SubjectSet& out) {

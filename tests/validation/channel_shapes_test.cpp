@@ -104,7 +104,7 @@ TEST(ChannelShapes, AFaultThatNoEntryDescribesIsToldAtItsSensor) {
     const diagnosis::Diagnosis d = diagnosis::diagnose(s, data, all, {{}, 199});
     EXPECT_TRUE(d.unexplained) << c.effect;
     ASSERT_FALSE(d.localised.empty()) << c.effect;
-    EXPECT_EQ(subject::sensor_of(*d.localised.front().effect.effect->place), c.sensor);
+    EXPECT_EQ(subject::sensor_of(d.localised.front().place), c.sensor);
     const auto told =
         nlohmann::json::parse(report::diagnosis_json(d)).at("unexplained").at("localised").at(0).at("place");
     EXPECT_EQ(told.at("part"), c.sensor);

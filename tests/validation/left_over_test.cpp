@@ -44,9 +44,9 @@ TEST(NamedBesideUnknown, NotWhatALawAtAnotherPlaceExplains) {
   for (const Effect& e : places)
     if (e.name.starts_with("linear@")) both.push_back(e);
   const auto named = [&](const std::vector<Effect>& known) {
-    const std::vector<Signature> all = signatures(o, known, 1);
-    const Candidates candidates(all, 1);
-    return named_beside_unknown(o.whitened_patterns(), all, candidates, {o, {all[0].effect}, fitted, {}, {}})
+    const Explanations all{signatures(o, known, 1)};
+    const Candidates candidates(all.laws, 1);
+    return named_beside_unknown(o.whitened_patterns(), all, candidates, {o, {all.laws[0].effect}, fitted, {}, {}})
         .effects.size();
   };
   EXPECT_EQ(named(entry), 1u);
@@ -83,10 +83,10 @@ TEST(AtPlaces, AnyCurveIsMoreThanTheLawsOfAPlace) {
   const measurement::Measurements data = prediction::simulate(
       with_effect(m, *contact, 1000 * start_values(*contact), {}), prediction::campaign("random", m, 50, 15), {});
   const Observations o(m, data, {});
-  const std::vector<Signature> all = signatures(o, known, 1);
+  const Explanations all{signatures(o, known, 1)};
   const Fit null = fit_of_all(o, {}, VectorX(0));
   std::vector<MatrixX> laws;
-  for (const Signature& s : all)
+  for (const Signature& s : all.laws)
     if (s.effect.effect->name.ends_with("@joint_4.tx")) laws.push_back(s.basis);
   ASSERT_EQ(laws.size(), 2u);
   const MatrixX span = statistics::orthonormal(statistics::side_by_side(laws, null.residual.size()));
@@ -94,6 +94,7 @@ TEST(AtPlaces, AnyCurveIsMoreThanTheLawsOfAPlace) {
   const AtPlace& most = *std::max_element(places.begin(), places.end(),
                                           [](const AtPlace& a, const AtPlace& b) { return a.gain < b.gain; });
   const auto numbers = static_cast<double>(o.numbers());
+  ASSERT_TRUE(most.best);
   EXPECT_TRUE(most.best->effect.effect->name.ends_with("@joint_4.tx")) << most.best->effect.effect->name;
   EXPECT_LT(null.chi2 - most.gain, numbers + 3 * std::sqrt(2 * numbers));
   EXPECT_GT(null.chi2 - (span.transpose() * null.residual).squaredNorm(), numbers + 10 * std::sqrt(2 * numbers));
@@ -109,16 +110,16 @@ TEST(AtOnePlace, StandsForEffectsThatAddUpToIt) {
   for (Effect& e : known) e.place.emplace().path = "part";
   for (int i = 0; i < 3; ++i) known.push_back(test::springs_apart::along(fmt::format("e{}", i), axis(i)));
   const test::springs_apart::Seen s = test::springs_apart::seen(20 * (axis(0) + axis(1) + axis(2)));
-  const std::vector<Signature> all = signatures(s.observations, known, 1);
-  ASSERT_EQ(all.size(), 5u);
-  const Candidates candidates(all, 1);
+  const Explanations all{signatures(s.observations, known, 1)};
+  ASSERT_EQ(all.laws.size(), 5u);
+  const Candidates candidates(all.laws, 1);
   const auto found = [&](const std::vector<std::size_t>& which, const VectorX& values) {
     Hypothesis h;
     for (const std::size_t i : which) h.push_back({&known[i], {}});
     return Selection{s.observations, h, fit_of_all(s.observations, h, values), {}, {}};
   };
   double more = log_evidence(1200, 2, false);
-  for (std::size_t i = 2; i < 5; ++i) more -= candidates.class_log_odds_of(all[i].effect, 400);
+  for (std::size_t i = 2; i < 5; ++i) more -= candidates.class_log_odds_of(all.laws[i].effect, 400);
   ASSERT_GT(more, 2);
   const Selection three = found({2, 3, 4}, VectorX::Constant(3, 20));
   ASSERT_LT(three.fit.chi2, 0.1);

@@ -17,6 +17,7 @@ using namespace diagnosis;
 constexpr Eigen::Index numbers = 40;
 
 VectorX axis(Eigen::Index i) { return VectorX::Unit(numbers, i); }
+MatrixX two(const VectorX& a, const VectorX& b) { return (MatrixX(numbers, 2) << a, b).finished(); }
 
 class Places {
  public:
@@ -32,13 +33,22 @@ class Places {
     s.basis = columns;
     s.start = VectorX::Unit(columns.cols(), 0);
     s.lambda = 1;
-    all_.push_back(std::move(s));
+    known_.laws.push_back(std::move(s));
     return *this;
   }
 
   /// At the place of the last law.
   Places& whatever(const MatrixX& columns) {
-    all_.back().whatever_the_law = std::make_shared<const MatrixX>(columns);
+    known_.laws.back().whatever_the_law = std::make_shared<const MatrixX>(columns);
+    return *this;
+  }
+
+  /// Another place, where no law is known.
+  Places& without_law(const std::string& part, const MatrixX& columns, std::optional<int> leg = {}) {
+    subject::Place place;
+    place.part = part;
+    place.path = "leg." + part;
+    known_.without_law.push_back({place, leg, std::make_shared<const MatrixX>(columns)});
     return *this;
   }
 
@@ -47,18 +57,18 @@ class Places {
     fit.residual = residual;
     fit.signature = fitted;
     fit.chi2 = residual.squaredNorm();
-    return localised(at_places(all_, {}, fit, 1), fit.chi2, static_cast<double>(numbers));
+    return localised(at_places(known_, {}, fit, 1), fit.chi2, static_cast<double>(numbers));
   }
 
   std::vector<AtPlace> at(const VectorX& residual) const {
     Fit fit;
     fit.residual = residual;
-    return at_places(all_, {}, fit, 1);
+    return at_places(known_, {}, fit, 1);
   }
 
  private:
   std::deque<effects::Effect> effects_;
-  std::vector<Signature> all_;
+  Explanations known_;
 };
 
 // A law that nobody wrote, 3 : 4 between two of one place. Of the laws alone the largest gain is another place's: 0.9
@@ -70,7 +80,7 @@ TEST(Localised, APlaceIsJudgedByAllItsLawsTogether) {
   p.law("elbow", "spring", axis(0)).law("elbow", "play", axis(1)).law("wrist", "spring there", near);
   const std::vector<Localised> found = p.of(hidden);
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].effect.effect->place->part, "elbow");
+  EXPECT_EQ(found[0].place.part, "elbow");
   EXPECT_EQ(found[0].what, "play");
   EXPECT_NEAR(found[0].share, 1, 1e-12);
   // 400 with two dimensions against 324 with one.
@@ -85,7 +95,21 @@ TEST(Localised, APlaceCanDoMoreThanItsLaws) {
   p.law("load", "factor", axis(1)).whatever(axis(0)).law("wrist", "spring", (axis(0) + axis(2)).normalized());
   const std::vector<Localised> found = p.of(hidden);
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].effect.effect->place->part, "load");
+  EXPECT_EQ(found[0].place.part, "load");
+  EXPECT_NEAR(found[0].share, 1, 1e-12);
+}
+
+// Nor need a law be known at a place.
+TEST(Localised, APlaceWithoutALawIsTold) {
+  Places p;
+  p.law("load", "factor", axis(1)).law("wrist", "spring", (axis(0) + axis(2)).normalized());
+  p.without_law("rod", two(axis(0), axis(3)), 2).without_law("rod", two(axis(4), axis(3)), 1);
+  const std::vector<Localised> found = p.of(20 * axis(0));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].place.part, "rod");
+  EXPECT_EQ(found[0].leg, 2);
+  EXPECT_EQ(found[0].effect, nullptr);
+  EXPECT_EQ(found[0].what, "leg 2 rod, by none of the laws");
   EXPECT_NEAR(found[0].share, 1, 1e-12);
 }
 
@@ -105,9 +129,9 @@ TEST(Localised, TheLegsOfAPlaceShareItsPrior) {
   p.law("hip", "spring", axis(0));
   const std::vector<Localised> found = p.of(20 * axis(0));
   ASSERT_EQ(found.size(), 2u);
-  EXPECT_EQ(found[0].effect.effect->place->part, "hip");
+  EXPECT_EQ(found[0].place.part, "hip");
   EXPECT_NEAR(found[0].probability, 6.0 / 7, 1e-9);
-  EXPECT_EQ(found[1].effect.leg, 3);
+  EXPECT_EQ(found[1].leg, 3);
 }
 
 // What no place explains is noise of unknown size to all of them: χ² of 3600 over 39 numbers is left here.

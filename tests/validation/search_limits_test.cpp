@@ -206,8 +206,8 @@ TEST(SearchLimits, AnEffectThatIsAQuarterOfWhatIsLeftStaysBesideTheUnknown) {
     const Hypothesis h = {{&effects[0], {}}, {&effects[1], {}}};
     const Fit f = fit_of_all(s.observations, h, test::values({100, size}));
     EXPECT_NEAR(f.chi2, 400, 0.1);
-    const std::vector<Signature> all = signatures(s.observations, effects, 1);
-    const Candidates candidates(all, 1);
+    const Explanations all{signatures(s.observations, effects, 1)};
+    const Candidates candidates(all.laws, 1);
     return named_beside_unknown(s.observations.whitened_patterns(), all, candidates, {s.observations, h, f, {}, {}})
         .effects.size();
   };

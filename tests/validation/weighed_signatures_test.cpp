@@ -166,5 +166,62 @@ TEST(WhateverTheLaw, HoldsTheLawsOfAPlaceInAMachine) {
   EXPECT_GE(contacts, 10u);
 }
 
+// A member of another stiffness stretches, twists and bends more about both axes, all along it: in a serial arm, in
+// every leg, in one of three, in a group of branches. To the first order, as drawn.
+TEST(WhateverTheLaw, HoldsTheLawsOfAMemberOfAMachine) {
+  std::size_t members = 0;
+  for (const char* device : {"scara", "hybrid", "haptic-6psu", "delta"}) {
+    const Looked l(device);
+    const Changes changes(l.o, {}, 1);
+    for (const effects::Effect& e : l.effects) {
+      if (!e.name.starts_with("factor@") || !e.place->path.starts_with("leg.") || !e.place->freedoms.empty() ||
+          !e.place->others.empty())
+        continue;
+      const auto leg = e.scope == effects::Scope::one_leg ? std::optional(2) : std::nullopt;
+      const MatrixX span = statistics::orthonormal(changes.by_whatever(*e.place, leg), 1e-6);
+      const VectorX change = changes.by({&e, leg}).columns.col(0);
+      if (change.norm() < 1e-12) continue;  // hinged at both ends
+      EXPECT_LE(span.cols(), 4);
+      EXPECT_LT((change - span * (span.transpose() * change)).norm(), 0.01 * change.norm()) << device << " " << e.name;
+      ++members;
+    }
+  }
+  EXPECT_EQ(members, 10u);
+}
+
+// A sensor that reads another point, or is turned, shows what its shapes do.
+TEST(WhateverTheLaw, HoldsTheLawsOfTheSensorOfAMachine) {
+  const Looked l("stewart-6ups");
+  std::size_t found = 0;
+  for (const Signature& s : SignaturesAtPlaces(l.o, l.effects, 2).all())
+    if (s.effect.effect->name == "moved@sensor") {
+      ASSERT_NE(s.whatever_the_law, nullptr);
+      const MatrixX span = statistics::orthonormal(*s.whatever_the_law, 1e-6);
+      EXPECT_LT((s.basis - span * (span.transpose() * s.basis)).norm(), 1e-3 * s.basis.norm());
+      ++found;
+    }
+  EXPECT_EQ(found, 1u);
+}
+
+// Places where no law acts are known too. With nothing but an entry of the catalogue these are the members and the
+// sensor; where a law of theirs is known, none.
+TEST(PlacesWithoutLaw, AreTheMembersAndTheSensorWhereNoLawActs) {
+  const Looked l("scara");
+  const auto without = [&](const auto& is_known) {
+    std::vector<effects::Effect> known;
+    for (const effects::Effect& e : l.effects)
+      if (is_known(e)) known.push_back(e);
+    const SignaturesAtPlaces all(l.o, known, 1);
+    std::vector<std::string> out;
+    for (const PlaceWithoutLaw& p : all.known().without_law) out.push_back(p.place.part);
+    std::sort(out.begin(), out.end());
+    return out;
+  };
+  const std::vector<std::string> all = without([](const effects::Effect& e) { return !e.place; });
+  EXPECT_EQ(all, (std::vector<std::string>{"column", "fore_link", "quill", "sensor", "upper_link"}));
+  EXPECT_EQ(without([](const effects::Effect& e) { return e.name != "factor@fore_link"; }),
+            std::vector<std::string>{"fore_link"});
+}
+
 }  // namespace
 }  // namespace deflect::diagnosis

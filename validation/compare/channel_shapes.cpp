@@ -56,6 +56,33 @@ MatrixX shapes_of(const ResidualStudy& s, std::size_t channel, const std::vector
   return statistics::side_by_side(out, p.size());
 }
 
+/// By measured number.
+MatrixX shapes_of_motion(const ResidualStudy& s) {
+  MatrixX out = MatrixX::Zero(std::ssize(s.values), 8);
+  for (std::size_t i = 0; i < s.values.size(); ++i) {
+    if (s.values[i].channel >= 6) continue;
+    const Vector6 d = s.predicted[s.values[i].reading].head<6>();
+    const Vector3 u = d.head<3>(), th = d.tail<3>();
+    Eigen::Matrix<double, 6, 8> all = Eigen::Matrix<double, 6, 8>::Zero();
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const Vector3 e = Vector3::Unit(k);
+      all.col(k).head<3>() = th.cross(e);
+      all.col(3 + k) << e.cross(u), e.cross(th);
+    }
+    all.col(6).head<3>() = u;
+    all.col(7).tail<3>() = th;
+    out.row(as_index(i)) = all.row(as_index(s.values[i].channel));
+  }
+  return out;
+}
+
+MatrixX without_zeros(const MatrixX& columns) {
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index k = 0; k < columns.cols(); ++k)
+    if (!columns.col(k).isZero(0)) kept.push_back(k);
+  return columns(Eigen::all, kept);
+}
+
 }  // namespace
 
 std::map<std::string, MatrixX> channel_shapes(const ResidualStudy& s) {
@@ -67,11 +94,9 @@ std::map<std::string, MatrixX> channel_shapes(const ResidualStudy& s) {
     MatrixX rows = MatrixX::Zero(std::ssize(s.values), all.cols());
     for (std::size_t i = 0; i < s.values.size(); ++i)
       if (s.values[i].channel == 6 + c) rows.row(as_index(i)) = all.row(as_index(s.values[i].reading));
-    std::vector<Eigen::Index> kept;
-    for (Eigen::Index k = 0; k < rows.cols(); ++k)
-      if (!rows.col(k).isZero(0)) kept.push_back(k);
-    out[s.data->instruments.sensors[c].name] = rows(Eigen::all, kept);
+    out[s.data->instruments.sensors[c].name] = without_zeros(rows);
   }
+  if (MatrixX motion = without_zeros(shapes_of_motion(s)); motion.cols() > 0) out.emplace("sensor", std::move(motion));
   return out;
 }
 

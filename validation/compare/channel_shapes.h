@@ -1,4 +1,4 @@
-// What can be wrong with a named sensor's channel, whatever the cause.
+// What can be wrong with a sensor, whatever the cause.
 #pragma once
 
 #include <map>
@@ -15,7 +15,10 @@ namespace deflect::compare {
 ///   p of the others      those of the same quantity: crosstalk,
 ///   time                 from the first reading to the last,
 ///   p less what it shows if it follows only where it lags by more than 0, a tenth and three tenths of its largest |p|.
-/// The last two only where the order of the readings is known. A column that is zero is left out.
+/// The last two only where the order of the readings is known.
+///
+/// Of "sensor", which reads the motion (u, θ) of a machine's tool point: θ × e of another point, e × u and e × θ of
+/// other axes, u and θ of other scales, e along x, y and z. A column that is zero is left out.
 std::map<std::string, MatrixX> channel_shapes(const ResidualStudy&);
 
 }  // namespace deflect::compare

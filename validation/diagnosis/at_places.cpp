@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "validation/diagnosis/evidence.h"
+#include "validation/effects/place_effects.h"
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"
 #include "validation/statistics/tail.h"
@@ -20,47 +21,47 @@ namespace {
 constexpr double left_of_a_column = 1e-3;  // of a unit column beside the fit: less is rounding
 constexpr double together_told = 0.95;     // probability
 constexpr double half = 0.5;               // of a place's prior: its laws, or any curve
-constexpr std::size_t looked_into = 6;     // places; the columns of each are kept
+constexpr std::size_t looked_into = 6;     // places: the columns are computed each time
 constexpr double beyond_chance = 30;       // in χ², of a few hundred that are looked at
 
 struct LawsAtPlace {
+  Spot spot;
   std::vector<const Signature*> laws;
+  const PlaceWithoutLaw* without = nullptr;
   double prior = 1;
 };
 
-std::string place_of(const effects::PlacedEffect& e) {
-  const std::string sensor = subject::sensor_of(*e.effect->place);
-  return sensor.empty() ? subject::id_of(*e.effect->place) : "sensors." + sensor;
-}
-
-/// In the order of the signatures. What can be wrong with a sensor's channel is at one place, whatever it is.
-std::vector<LawsAtPlace> laws_by_place(const std::vector<Signature>& all) {
+/// In the order of the signatures, then of the places. What can be wrong with a sensor is at one place, whatever it is.
+std::vector<LawsAtPlace> laws_by_place(const Explanations& all) {
   std::vector<LawsAtPlace> out;
-  std::map<std::pair<std::string, int>, std::size_t> number;
-  std::map<std::string, double> legs;
-  for (const Signature& s : all) {
+  std::map<Spot, std::size_t> number;
+  for (const Signature& s : all.laws) {
     if (!s.effect.effect->place) continue;
-    const std::string id = place_of(s.effect);
-    const auto [at, is_new] = number.emplace(std::pair(id, s.effect.leg.value_or(0)), out.size());
-    if (is_new) out.emplace_back();
-    if (is_new && s.effect.leg) legs[id] += 1;
+    const Spot spot = spot_of(*s.effect.effect->place, s.effect.leg);
+    const auto [at, is_new] = number.emplace(spot, out.size());
+    if (is_new) out.push_back({spot, {}});
     out[at->second].laws.push_back(&s);
   }
+  for (const PlaceWithoutLaw& p : all.without_law) out.push_back({spot_of(p.place, p.leg), {}, &p});
+  std::map<std::string, double> legs;
+  for (const LawsAtPlace& p : out)
+    if (p.spot.second > 0) legs[p.spot.first] += 1;
   double total = 0;
   for (LawsAtPlace& p : out) {
-    const effects::PlacedEffect& e = p.laws.front()->effect;
-    if (e.leg) p.prior = 1 / legs[place_of(e)];
+    if (p.spot.second > 0) p.prior = 1 / legs[p.spot.first];
     total += p.prior;
   }
   for (LawsAtPlace& p : out) p.prior /= total;
   return out;
 }
 
+const AnyCurve* curve_of(const LawsAtPlace& p) { return p.without ? nullptr : p.laws.front()->any_curve.get(); }
+
 /// By all laws at a place, or by any curve there as well.
 AtPlace explained_by(const LawsAtPlace& place, const VectorX& residual, const MatrixX& fitted, bool any_curve) {
   AtPlace out;
-  const Signature& first = *place.laws.front();
-  out.prior = (first.any_curve ? half : 1) * place.prior;
+  out.without_law = place.without;
+  out.prior = (curve_of(place) ? half : 1) * place.prior;
   double most = -1;
   std::vector<MatrixX> columns;
   const auto add = [&](const MatrixX& basis) {
@@ -72,9 +73,10 @@ AtPlace explained_by(const LawsAtPlace& place, const VectorX& residual, const Ma
     if (const double gain = most_gain(*s, residual, fitted); gain > most) most = gain, out.best = s;
     add(s->basis);
   }
-  if (first.whatever_the_law) add(*first.whatever_the_law);
-  if (any_curve) add(first.any_curve->columns());
-  out.other_way = out.best->one_sided && out.best->start_along(residual) > 0;
+  const auto& whatever = place.without ? place.without->whatever_the_law : place.laws.front()->whatever_the_law;
+  if (whatever) add(*whatever);
+  if (any_curve) add(curve_of(place)->columns());
+  out.other_way = out.best && out.best->one_sided && out.best->start_along(residual) > 0;
   if (columns.empty()) return out;
   const MatrixX together = statistics::side_by_side(columns, residual.size());
   columns.clear();
@@ -87,15 +89,14 @@ AtPlace explained_by(const LawsAtPlace& place, const VectorX& residual, const Ma
 /// Of those that have curves: where the laws explain most, and the places of the effects, whose laws are used up.
 std::vector<std::size_t> worth_any_curve(const std::vector<LawsAtPlace>& places, const std::vector<AtPlace>& by_laws,
                                          const Hypothesis& effects) {
-  const auto has_effect = [&](const effects::PlacedEffect& at) {
+  const auto has_effect = [&](const LawsAtPlace& p) {
     return std::any_of(effects.begin(), effects.end(), [&](const effects::PlacedEffect& e) {
-      return e.effect->place && e.leg == at.leg && place_of(e) == place_of(at);
+      return e.effect->place && spot_of(*e.effect->place, e.leg) == p.spot;
     });
   };
   std::vector<std::size_t> out, others;
   for (std::size_t i = 0; i < places.size(); ++i)
-    if (const Signature& first = *places[i].laws.front(); first.any_curve)
-      (has_effect(first.effect) ? out : others).push_back(i);
+    if (curve_of(places[i])) (has_effect(places[i]) ? out : others).push_back(i);
   std::stable_sort(others.begin(), others.end(),
                    [&](std::size_t a, std::size_t b) { return by_laws[a].gain > by_laws[b].gain; });
   others.resize(std::min(looked_into, others.size()));
@@ -103,20 +104,26 @@ std::vector<std::size_t> worth_any_curve(const std::vector<LawsAtPlace>& places,
   return out;
 }
 
-/// The effect's title in the middle of a sentence, with the leg's number where it is one.
-std::string words_of(const effects::PlacedEffect& e) {
+/// The title of the likeliest law in the middle of a sentence, with the leg's number where it is one.
+std::string words_of(const AtPlace& p) {
+  if (!p.best) {
+    subject::Place place = p.place();
+    place.leg = p.without_law->leg;
+    return effects::words_of(place) + ", by none of the laws";
+  }
+  const effects::PlacedEffect& e = p.best->effect;
   std::string out = e.effect->title;
   out.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(out.front())));
   const std::string one = "of one leg";
   if (const std::size_t at = out.find(one); e.leg && at != out.npos)
     out.replace(at, one.size(), fmt::format("of leg {}", *e.leg));
+  if (p.other_way) out += ", the other way: the machine yields less there than the model";
   return out;
 }
 
 }  // namespace
 
-std::vector<AtPlace> at_places(const std::vector<Signature>& all, const Hypothesis& effects, const Fit& fit,
-                               int threads) {
+std::vector<AtPlace> at_places(const Explanations& all, const Hypothesis& effects, const Fit& fit, int threads) {
   const MatrixX fitted =
       fit.signature.cols() > 0 ? statistics::orthonormal(fit.signature) : MatrixX(fit.residual.size(), 0);
   const std::vector<LawsAtPlace> places = laws_by_place(all);
@@ -167,9 +174,9 @@ std::vector<Localised> localised(const std::vector<AtPlace>& places, double chi2
     const AtPlace& p = places[i];
     if (out.size() == most || sum > together_told || p.gain < beyond_chance) break;
     sum += probability[i];
-    std::string what = words_of(p.best->effect);
-    if (p.other_way) what += ", the other way: the machine yields less there than the model";
-    out.push_back({p.best->effect, std::move(what), std::min(1.0, p.gain / beyond), probability[i]});
+    out.push_back({p.place(), p.best ? p.best->effect.leg : p.without_law->leg,
+                   p.best ? p.best->effect.effect : nullptr, words_of(p), std::min(1.0, p.gain / beyond),
+                   probability[i]});
   }
   return out;
 }

@@ -10,6 +10,7 @@
 // tell apart: the gains are divided by s = max(1, χ² left by the best place over the numbers left).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,17 +20,20 @@ namespace deflect::diagnosis {
 
 /// A place in all legs, or in one of them.
 struct AtPlace {
-  const Signature* best = nullptr;  ///< of the laws at the place the one that explains most
-  bool other_way = false;           ///< physics lets that one act to the other side only
-  double gain = 0;                  ///< in χ², by all laws together, or by any curve
-  int dimension = 0;                ///< of their span
+  const Signature* best = nullptr;  ///< of the laws at the place the one that explains most; null without any
+  const PlaceWithoutLaw* without_law = nullptr;  ///< where there is none
+  bool other_way = false;                        ///< physics lets that one act to the other side only
+  double gain = 0;                               ///< in χ², by all laws together, or by any curve
+  int dimension = 0;                             ///< of their span
   /// Prior probability. All places share it alike, and the single legs of a place share that of one place.
   double prior = 0;
+
+  const subject::Place& place() const { return best ? *best->effect.effect->place : without_law->place; }
 };
 
 /// Beside the fit of these effects, in the order of the signatures; places whose laws do nothing beside it are left
-/// out. Any curve is tried at the places of the effects too. The signatures must outlive the result.
-std::vector<AtPlace> at_places(const std::vector<Signature>&, const Hypothesis& fitted, const Fit&, int threads);
+/// out. Any curve is tried at the places of the effects too. The explanations must outlive the result.
+std::vector<AtPlace> at_places(const Explanations&, const Hypothesis& fitted, const Fit&, int threads);
 
 /// ln of the evidence that an unknown law acts at one of the places, over all places by their priors. ln 0 without any.
 double log_evidence(const std::vector<AtPlace>&);
@@ -38,10 +42,12 @@ double log_evidence(const std::vector<AtPlace>&);
 double p_value(const std::vector<AtPlace>&);
 
 struct Localised {
-  effects::PlacedEffect effect;  ///< of the laws at the place the one that explains most
-  std::string what;              ///< "the actuator rx of every leg yields like a spring"
-  double share = 0;              ///< of χ² beyond noise and tolerances that the place can explain beside the fit
-  double probability = 0;        ///< that it acts there and at no other place
+  subject::Place place;
+  std::optional<int> leg;
+  const effects::Effect* effect = nullptr;  ///< of the laws at the place the one that explains most; null without any
+  std::string what;        ///< "the actuator rx of every leg yields like a spring", "forearm, by none of the laws"
+  double share = 0;        ///< of χ² beyond noise and tolerances that the place can explain beside the fit
+  double probability = 0;  ///< that it acts there and at no other place
 };
 
 /// The places for the residual of a fit with that χ² of `numbers` measured numbers, the most probable first, until they

@@ -118,11 +118,12 @@ bool Changes::agrees(const effects::PlacedEffect& e) const {
   return off && *off <= 0;
 }
 
-MatrixX Changes::by_whatever(const subject::Place& place) const {
+MatrixX Changes::by_whatever(const subject::Place& place, std::optional<int> leg) const {
   const frame::FrameDescription* drawn = observations_.subject().frame();
   if (drawn && place.kind == subject::PlaceKind::load)
     if (const frame::LoadCase* load = find(drawn->loads, place.part)) return by_any_load(*load, place.part);
   if (drawn && place.kind == subject::PlaceKind::member && place.others.empty()) return by_any_elongation(place);
+  if (!drawn && place.kind == subject::PlaceKind::member && place.others.empty()) return by_any_section(place, leg);
   return MatrixX(null_.size(), 0);
 }
 
@@ -161,6 +162,21 @@ MatrixX Changes::by_any_elongation(const subject::Place& place) const {
     out.row(as_index(i)) = -site->moves(as_index(v.channel) - 6) * Vector3(f, std::abs(f), step);
   }
   return out;
+}
+
+MatrixX Changes::by_any_section(const subject::Place& member, std::optional<int> leg) const {
+  const compare::ResidualStudy& study = observations_.comparison().study;
+  std::vector<MatrixX> out;
+  for (const std::size_t freedom : {0u, 3u, 4u, 5u}) {  // x is along the member
+    subject::Place sections = member;
+    sections.freedoms = {freedom};
+    const auto same = [](double force) { return force; };
+    const auto told = transmissions_ ? transmissions_->change(sections, leg, same, *study.data) : std::nullopt;
+    if (!told) continue;
+    const VectorX change = -statistics::rows_of(study.values, *told);
+    if (const double length = change.norm(); length > 0) out.emplace_back(size_of_a_curve / length * change);
+  }
+  return statistics::side_by_side(out, null_.size());
 }
 
 bool Changes::is_known_by_statics(const subject::Place& place) const {

@@ -31,11 +31,12 @@ class Changes {
   /// prediction. This is checked for one law at each place on the readings of the first pose, to 1 %.
   Changes(const Observations&, const std::vector<effects::PlacedEffect>&, int threads);
 
-  /// What may happen at a place of a frame whether or not a law describes it: columns. At a load a force along and a
+  /// What may happen at a place whether or not a law describes it: columns. At a load of a frame a force along and a
   /// moment about each axis, at each node that it acts on, or, at more than four, at all of them; at a member an
   /// elongation that grows with the force that passes, one that grows in both senses of it, and a step where it turns,
-  /// which a gauge on the member itself does not read. None at other places.
-  MatrixX by_whatever(const subject::Place&) const;
+  /// which a gauge on the member itself does not read. At a member of a machine, of every leg or of one: sections that
+  /// stretch, twist and bend more about each of their axes, all along it. None at other places.
+  MatrixX by_whatever(const subject::Place&, std::optional<int> leg) const;
   bool is_known_by_statics(const subject::Place&) const;
   /// Any curve of deflection δ over force f, in each freedom of the effect's place in a machine: |f|^p and
   /// sign(f)|f|^p, p = 0 (a step, as of play), ½, 1 and 2. Contacts, play, springs that harden or soften and
@@ -52,6 +53,7 @@ class Changes {
                                                          const measurement::Measurements&) const;
   MatrixX by_any_load(const frame::LoadCase&, const std::string& name) const;
   MatrixX by_any_elongation(const subject::Place&) const;
+  MatrixX by_any_section(const subject::Place&, std::optional<int> leg) const;
   bool agrees(const effects::PlacedEffect&) const;
   bool moved_by_play(const effects::EffectInstance&, const std::vector<bool>& readings, VectorX& change) const;
   bool are_seen(const VectorX&) const;

@@ -54,15 +54,15 @@ double probability_of_unknown(double log_evidence, double prior_odds) {
 }
 
 /// Of what is left unexplained: its size, its pattern, where it acts, the entry that comes nearest.
-void describe_left_over(Diagnosis& d, const std::vector<Signature>& all, const Selection& found, int threads) {
+void describe_left_over(Diagnosis& d, const Explanations& known, const Selection& found, int threads) {
   const Observations& o = found.observations;
   const auto numbers = static_cast<double>(o.numbers());
   const double left = std::max(1.0, found.fit.chi2 - numbers);
   d.share_unexplained = std::min(1.0, left / std::max(left, o.null_residual().squaredNorm() - numbers));
   d.pattern = pattern_left(o, subject_with(o, found.effects, found.fit.values));
-  d.localised = localised(at_places(all, found.effects, found.fit, threads), found.fit.chi2, numbers);
+  d.localised = localised(at_places(known, found.effects, found.fit, threads), found.fit.chi2, numbers);
   const MatrixX fitted = statistics::orthonormal(found.fit.signature);
-  for (const Signature& s : all)
+  for (const Signature& s : known.laws)
     if (const double share = most_gain(s, found.fit.residual, fitted) / left;
         !s.effect.effect->place && share > d.nearest_share) {
       d.nearest = name_of(s.effect);
@@ -143,7 +143,7 @@ struct FirstStep {
         candidates(all(), work.threads, [&](std::size_t done, std::size_t of) { rounds(done, of); }),
         null(fit_of_all(o, {}, VectorX(0))),
         each(candidates.beside(o, {}, null, even_hopeless)),
-        left(left_over(o.whitened_patterns(), all(), {}, null, work.threads)),
+        left(left_over(o.whitened_patterns(), signatures.known(), {}, null, work.threads)),
         larger(larger_tolerances(o)),
         chance(chance_of_any(all(), candidates.between(), least_p_value(all(), each), bootstrap_sets, work,
                              [&](std::size_t done, std::size_t of) { rounds(done, of); })) {}
@@ -201,11 +201,11 @@ Explained nothing(const FirstStep& s) { return {{s.observations, {}, s.null, {},
 Explained explained(const FirstStep& s, const Candidates& candidates, const std::vector<Candidate>& first) {
   Explained out{select(s.observations, candidates, first), {}};
   out.patterns = out.found.observations.whitened_patterns();
-  out.left = left_over(out.patterns, s.all(), out.found.effects, out.found.fit, candidates.threads());
+  out.left = left_over(out.patterns, s.signatures.known(), out.found.effects, out.found.fit, candidates.threads());
   const double more = out.left.significant() ? 0 : called_for - std::log(Candidates::prior_unknown);
-  if (std::optional<Selection> there = at_one_place(s.all(), candidates, out.found, more)) {
+  if (std::optional<Selection> there = at_one_place(s.signatures.known(), candidates, out.found, more)) {
     out.found = std::move(*there);
-    out.left = left_over(out.patterns, s.all(), out.found.effects, out.found.fit, candidates.threads());
+    out.left = left_over(out.patterns, s.signatures.known(), out.found.effects, out.found.fit, candidates.threads());
   }
   if (!out.left.significant()) out.patterns.reset();
   return out;
@@ -286,9 +286,9 @@ void conclude(Diagnosis& d, Explained e, const FirstStep& told, const measuremen
   if (!d.unexplained && d.probability_nothing >= rather_nothing) found = nothing(told).found;
   sort_candidates(d);
   if (d.unexplained) {
-    found = named_beside_unknown(e.patterns, told.all(), told.candidates, std::move(found));
+    found = named_beside_unknown(e.patterns, told.signatures.known(), told.candidates, std::move(found));
     e.patterns.reset();
-    describe_left_over(d, told.all(), found, threads);
+    describe_left_over(d, told.signatures.known(), found, threads);
   }
   const Observations& seen = found.observations;
   d.missing = found.effects;

@@ -25,17 +25,17 @@ const AtPlace* likeliest(const std::vector<AtPlace>& places) {
   return out;
 }
 
-bool at_the_same_part(const effects::PlacedEffect& a, const effects::PlacedEffect& b) {
-  return a.effect->place && b.effect->place && subject::of_one_part(*a.effect->place, *b.effect->place);
+bool at_the_same_part(const effects::PlacedEffect& e, const AtPlace& p) {
+  return e.effect->place && subject::of_one_part(*e.effect->place, p.place());
 }
 
 /// Whether an unknown law at another place takes what this effect explains: with the effect and a law at a place the
 /// readings are not clearly likelier than with a law at a place alone.
 bool is_a_law_elsewhere(const effects::PlacedEffect& e, const Selection& with, const Hypothesis& others,
-                        const Fit& without, const std::vector<Signature>& all, const Candidates& candidates) {
+                        const Fit& without, const Explanations& all, const Candidates& candidates) {
   const std::vector<AtPlace> alone = at_places(all, others, without, candidates.threads());
   const AtPlace* place = likeliest(alone);
-  if (!place || at_the_same_part(e, place->best->effect)) return false;
+  if (!place || at_the_same_part(e, *place)) return false;
   const double more = log_evidence(at_places(all, with.effects, with.fit, candidates.threads())) - log_evidence(alone);
   return candidates.class_log_odds_of(e, std::max(0.0, without.chi2 - with.fit.chi2)) + more < called_for;
 }
@@ -81,7 +81,7 @@ std::string pattern_left(const Observations& o, const subject::Subject& subject)
   return out.empty() ? no_pattern(o, subject) : out;
 }
 
-LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>& patterns, const std::vector<Signature>& all,
+LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>& patterns, const Explanations& all,
                    const Hypothesis& fitted, const Fit& fit, int threads) {
   const Discrepancy common(patterns, fit.signature);
   const std::vector<AtPlace> places = at_places(all, fitted, fit, threads);
@@ -89,8 +89,8 @@ LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>& patterns, cons
           std::min(1.0, 2 * std::min(common.p_value(fit.residual), p_value(places)))};
 }
 
-std::optional<Selection> at_one_place(const std::vector<Signature>& all, const Candidates& candidates,
-                                      const Selection& s, double more) {
+std::optional<Selection> at_one_place(const Explanations& all, const Candidates& candidates, const Selection& s,
+                                      double more) {
   if (s.effects.empty()) return std::nullopt;
   const Fit null = fit_of_all(s.observations, {}, VectorX(0));
   const std::vector<AtPlace> alone = at_places(all, {}, null, candidates.threads()),
@@ -106,7 +106,7 @@ std::optional<Selection> at_one_place(const std::vector<Signature>& all, const C
                        (further ? std::max(0.0, log_odds(*further)) : 0);
   Selection there = s;
   for (std::size_t i = s.effects.size(); i-- > 0;) {
-    if (at_the_same_part(s.effects[i], place->best->effect)) continue;
+    if (at_the_same_part(s.effects[i], *place)) continue;
     auto [others, values] = without(there.effects, there.fit.values, i);
     there.effects = std::move(others);
     there.fit.values = std::move(values);
@@ -117,8 +117,8 @@ std::optional<Selection> at_one_place(const std::vector<Signature>& all, const C
   return there.fit.found ? std::optional(std::move(there)) : std::nullopt;
 }
 
-Selection named_beside_unknown(const std::shared_ptr<const WhitenedFamilies>& patterns,
-                               const std::vector<Signature>& all, const Candidates& candidates, Selection s) {
+Selection named_beside_unknown(const std::shared_ptr<const WhitenedFamilies>& patterns, const Explanations& all,
+                               const Candidates& candidates, Selection s) {
   const Discrepancy common(patterns), left(patterns, s.fit.signature);
   const Discrepancy::Size size = left.likeliest(s.fit.residual);
   const bool most = s.observations.null_residual().squaredNorm() > large_part * s.fit.chi2;

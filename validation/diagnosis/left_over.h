@@ -21,8 +21,8 @@ struct LeftOver {
   static constexpr double least_p = 3e-3;
 };
 
-LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>&, const std::vector<Signature>&,
-                   const Hypothesis& fitted, const Fit&, int threads);
+LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>&, const Explanations&, const Hypothesis& fitted,
+                   const Fit&, int threads);
 
 /// What this subject leaves, in words.
 std::string pattern_left(const Observations&, const subject::Subject&);
@@ -31,11 +31,11 @@ std::string pattern_left(const Observations&, const subject::Subject&);
 /// anew, where an unknown law there alone is likelier than all the effects and an unknown law beside them, by `more` in
 /// ln of the odds; nullopt where it is not, and where all effects are of that place. Noise counts as large as the
 /// better of the two leaves it.
-std::optional<Selection> at_one_place(const std::vector<Signature>&, const Candidates&, const Selection&, double more);
+std::optional<Selection> at_one_place(const Explanations&, const Candidates&, const Selection&, double more);
 
 /// Those of the effects that are called for even beside something unknown: where it takes what a common pattern can,
 /// and where it is a law at a place other than the effect's own.
-Selection named_beside_unknown(const std::shared_ptr<const WhitenedFamilies>&, const std::vector<Signature>&,
-                               const Candidates&, Selection);
+Selection named_beside_unknown(const std::shared_ptr<const WhitenedFamilies>&, const Explanations&, const Candidates&,
+                               Selection);
 
 }  // namespace deflect::diagnosis

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
@@ -86,6 +87,29 @@ std::map<std::string, double> count_by_name(const std::vector<Signature>& all) {
   return out;
 }
 
+/// Of the subject's own places, those that are one part: of every leg, and of each of several.
+template <class Does>
+void for_each_place(const subject::Subject& subject, const Does& does) {
+  for (const subject::Place& p : subject.places()) {
+    if (!p.others.empty()) continue;
+    does(p, std::nullopt);
+    for (int leg = 1; p.in_legs() && subject.legs() > 1 && leg <= subject.legs(); ++leg) does(p, std::optional(leg));
+  }
+}
+
+std::vector<PlaceWithoutLaw> places_without_law(const std::vector<Signature>& all, const subject::Subject& subject,
+                                                const WhateverTheLaw& any) {
+  std::set<Spot> known;
+  for (const Signature& s : all)
+    if (const auto& place = s.effect.effect->place) known.insert(spot_of(*place, s.effect.leg));
+  std::vector<PlaceWithoutLaw> out;
+  for_each_place(subject, [&](const subject::Place& p, std::optional<int> leg) {
+    const auto whatever = any.at(p, leg);
+    if (whatever && whatever->cols() > 0 && known.insert(spot_of(p, leg)).second) out.push_back({p, leg, whatever});
+  });
+  return out;
+}
+
 }  // namespace
 
 SignaturesAtPlaces::SignaturesAtPlaces(const Observations& o, const std::vector<effects::Effect>& effects,
@@ -104,9 +128,10 @@ SignaturesAtPlaces::SignaturesAtPlaces(const Observations& o, const std::vector<
   nowhere_ = left_out_.size();
   for (const effects::PlacedEffect& e : placed) places_.push_back({e});
   changes_ = std::make_shared<const Changes>(o, placed, threads);
-  for (const effects::PlacedEffect& e : placed)
-    if (const auto& at = e.effect->place; at && at->others.empty() && !whatever_.contains(at->path))
-      whatever_.emplace(at->path, changes_->by_whatever(*at));
+  for_each_place(o.subject(), [&](const subject::Place& p, std::optional<int> leg) {
+    if (MatrixX columns = changes_->by_whatever(p, leg); columns.cols() > 0)
+      whatever_.emplace(spot_of(p, leg), std::move(columns));
+  });
   weigh(o, threads, [&](std::size_t i) {
     Place& p = places_[i];
     auto change = outcome_of([&] { return changes_->by(p.effect); });
@@ -116,7 +141,7 @@ SignaturesAtPlaces::SignaturesAtPlaces(const Observations& o, const std::vector<
     return p.why.empty() ? std::move(change.value) : std::nullopt;
   });
   const auto failed = std::find_if(places_.begin(), places_.end(), [](const Place& p) { return !p.why.empty(); });
-  if (all_.empty() && failed != places_.end())
+  if (all().empty() && failed != places_.end())
     throw ModelError(fmt::format("{}: of {} effects none can be tried, so that nothing can be said: with {}, {}",
                                  o.subject().name(), places_.size(), name_of(failed->effect), failed->why));
 }
@@ -125,7 +150,7 @@ void SignaturesAtPlaces::weigh_for(const Observations& o, int threads) {
   std::vector<MatrixX> bases(places_.size());
   std::size_t next = 0;
   for (std::size_t i = 0; i < places_.size(); ++i)
-    if (places_[i].coordinates.rows() > 0) bases[i] = std::move(all_[next++].basis);
+    if (places_[i].coordinates.rows() > 0) bases[i] = std::move(known_.laws[next++].basis);
   const std::shared_ptr<const statistics::Whitening> before = std::move(whitening_);
   const std::vector<Eigen::Index> aside = std::move(aside_);
   left_out_.resize(nowhere_);
@@ -155,10 +180,11 @@ void SignaturesAtPlaces::weigh(const Observations& o, int threads, const ChangeO
   for (std::size_t k = 0; k < values.size(); ++k)
     if (o.aside()[values[k].reading]) aside_.push_back(as_index(k));
   const WhateverTheLaw any(o, changes_, whatever_);
-  all_.assign(places_.size(), {});
+  std::vector<Signature>& all = known_.laws;
+  all.assign(places_.size(), {});
   parallel::for_each_case(places_.size(), 1, threads, [&](std::size_t i) {
     Place& p = places_[i];
-    Signature& s = all_[i];
+    Signature& s = all[i];
     s.effect = p.effect;
     const std::optional<Change> change = change_of(i);
     if (!change) return;
@@ -169,17 +195,18 @@ void SignaturesAtPlaces::weigh(const Observations& o, int threads, const ChangeO
     s.start = change->summed ? VectorX(spanned.coordinates.rowwise().sum()) : VectorX(spanned.coordinates.col(0));
     s.lambda = s.start.norm();
     s.one_sided = s.shaped ? amplitude_from_nothing(*p.effect.effect) : one_sided(p.effect);
-    s.whatever_the_law = any.at(p.effect);
+    if (const auto& at = p.effect.effect->place) s.whatever_the_law = any.at(*at, p.effect.leg);
     s.any_curve = any.curve_at(p.effect);
     p.coordinates = std::move(spanned.coordinates);
     p.aside = change->columns(aside_, Eigen::all);
     p.summed = change->summed;
   });
-  for (std::size_t i = 0; i < all_.size(); ++i)
-    if (all_[i].basis.cols() == 0 && !places_[i].effect.effect->place)
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].basis.cols() == 0 && !places_[i].effect.effect->place)
       left_out_.push_back(
           {name_of(places_[i].effect), places_[i].why.empty() ? "changes nothing that was measured" : places_[i].why});
-  std::erase_if(all_, [](const Signature& s) { return s.basis.cols() == 0; });
+  std::erase_if(all, [](const Signature& s) { return s.basis.cols() == 0; });
+  known_.without_law = places_without_law(all, o.subject(), any);
 }
 
 std::vector<double> weights_of(const std::vector<Signature>& all) {

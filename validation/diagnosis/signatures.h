@@ -22,14 +22,28 @@ struct Signature {
   VectorX start;           ///< change of the whitened residual at the start values is basis · start
   double lambda = 0;       ///< its norm
   bool one_sided = false;  ///< physics fixes the amplitude's sign (where shaped, that of the columns)
-  /// What else may happen at its place, whether or not a law describes it: unit columns. Of sensors (channel_shapes.h)
-  /// and of loads and members of frames (Changes::by_whatever()); null elsewhere.
+  /// What else may happen at its place, whether or not a law describes it: unit columns. Of sensors (channel_shapes.h),
+  /// members, and loads of frames (Changes::by_whatever()); null elsewhere.
   std::shared_ptr<const MatrixX> whatever_the_law = nullptr;
   std::shared_ptr<const AnyCurve> any_curve = nullptr;  ///< at its place in a machine, where statics tells the forces
 
   int amplitudes() const { return shaped ? 1 : static_cast<int>(basis.cols()); }
   /// Inner product of the change at the start values with a residual.
   double start_along(const VectorX& residual) const { return start.dot(basis.transpose() * residual); }
+};
+
+/// A place, of every leg or of one, at which none of the effects changes what was measured, and what may happen there:
+/// unit columns.
+struct PlaceWithoutLaw {
+  subject::Place place;
+  std::optional<int> leg;
+  std::shared_ptr<const MatrixX> whatever_the_law;
+};
+
+/// What may explain a residual.
+struct Explanations {
+  std::vector<Signature> laws;
+  std::vector<PlaceWithoutLaw> without_law = {};
 };
 
 /// An effect that cannot be tested on these data, and why.
@@ -49,8 +63,10 @@ class SignaturesAtPlaces {
   /// aside, so that nothing is predicted anew.
   void weigh_for(const Observations&, int threads);
 
-  const std::vector<Signature>& all() const& { return all_; }
-  std::vector<Signature> all() && { return std::move(all_); }
+  const std::vector<Signature>& all() const& { return known_.laws; }
+  std::vector<Signature> all() && { return std::move(known_.laws); }
+  /// The signatures and the subject's other places.
+  const Explanations& known() const& { return known_; }
   /// Entries without a signature.
   const std::vector<LeftOut>& left_out() const { return left_out_; }
 
@@ -67,8 +83,8 @@ class SignaturesAtPlaces {
 
   std::vector<Place> places_;
   std::shared_ptr<const Changes> changes_;
-  std::map<std::string, MatrixX> whatever_;  ///< Changes::by_whatever(), by the path of the part
-  std::vector<Signature> all_;               ///< in the order of the places
+  std::map<Spot, MatrixX> whatever_;  ///< Changes::by_whatever()
+  Explanations known_;                ///< laws in the order of the places
   std::vector<LeftOut> left_out_;
   std::size_t nowhere_ = 0;  ///< how many of left_out_ have no place in the subject
   std::shared_ptr<const statistics::Whitening> whitening_;

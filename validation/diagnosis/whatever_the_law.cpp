@@ -1,5 +1,7 @@
 #include "validation/diagnosis/whatever_the_law.h"
 
+#include <fmt/format.h>
+
 #include <vector>
 
 #include "msa/base/index.h"
@@ -31,29 +33,29 @@ AnyCurve::AnyCurve(std::shared_ptr<const Observations> o, std::shared_ptr<const 
                    const effects::PlacedEffect& at)
     : observations_(std::move(o)), changes_(std::move(changes)), at_(at) {}
 
-const MatrixX& AnyCurve::columns() const {
-  std::call_once(once_, [&] {
-    const MatrixX raw = changes_->by_any_curve(at_);
-    columns_ = that_are_seen(*observations_, raw, observations_->uncertainty().whitened(raw));
-  });
-  return columns_;
+MatrixX AnyCurve::columns() const {
+  const MatrixX raw = changes_->by_any_curve(at_);
+  return that_are_seen(*observations_, raw, observations_->uncertainty().whitened(raw));
+}
+
+Spot spot_of(const subject::Place& p, std::optional<int> leg) {
+  const std::string sensor = subject::sensor_of(p);
+  if (!sensor.empty()) return {"sensors." + sensor, 0};
+  return {p.others.empty() ? fmt::format("{} {}", p.path, subject::motion_of(p)) : subject::id_of(p), leg.value_or(0)};
 }
 
 WhateverTheLaw::WhateverTheLaw(const Observations& o, std::shared_ptr<const Changes> changes,
-                               const std::map<std::string, MatrixX>& of_parts)
-    : observations_(std::make_shared<const Observations>(o)),
-      changes_(std::move(changes)),
-      sensors_(whitened(compare::channel_shapes(o.comparison().study))),
-      parts_(whitened(of_parts)) {}
+                               const std::map<Spot, MatrixX>& of_parts)
+    : observations_(std::make_shared<const Observations>(o)), changes_(std::move(changes)) {
+  std::map<Spot, MatrixX> all = of_parts;
+  for (auto& [sensor, shapes] : compare::channel_shapes(o.comparison().study))
+    all.emplace(Spot("sensors." + sensor, 0), std::move(shapes));
+  all_ = whitened(all);
+}
 
-std::shared_ptr<const MatrixX> WhateverTheLaw::at(const effects::PlacedEffect& e) const {
-  const std::optional<subject::Place>& place = e.effect->place;
-  if (!place) return nullptr;
-  const std::string sensor = subject::sensor_of(*place);
-  if (sensor.empty() && !place->others.empty()) return nullptr;
-  const Shapes& all = sensor.empty() ? parts_ : sensors_;
-  const auto found = all.find(sensor.empty() ? place->path : sensor);
-  return found == all.end() ? nullptr : found->second;
+std::shared_ptr<const MatrixX> WhateverTheLaw::at(const subject::Place& place, std::optional<int> leg) const {
+  const auto found = all_.find(spot_of(place, leg));
+  return found == all_.end() ? nullptr : found->second;
 }
 
 std::shared_ptr<const AnyCurve> WhateverTheLaw::curve_at(const effects::PlacedEffect& e) const {
@@ -62,16 +64,16 @@ std::shared_ptr<const AnyCurve> WhateverTheLaw::curve_at(const effects::PlacedEf
 }
 
 /// All of them at once, which takes a fraction of the time.
-WhateverTheLaw::Shapes WhateverTheLaw::whitened(const std::map<std::string, MatrixX>& all) const {
+WhateverTheLaw::Shapes WhateverTheLaw::whitened(const std::map<Spot, MatrixX>& all) const {
   std::vector<MatrixX> shapes;
-  for (const auto& [name, each] : all) shapes.push_back(each);
+  for (const auto& [spot, each] : all) shapes.push_back(each);
   const auto numbers = as_index(observations_->comparison().sigma.size());
   const MatrixX raw = statistics::side_by_side(shapes, numbers), white = observations_->uncertainty().whitened(raw);
   Shapes out;
   Eigen::Index at = 0;
-  for (const auto& [name, each] : all) {
+  for (const auto& [spot, each] : all) {
     MatrixX seen = that_are_seen(*observations_, each, white.middleCols(at, each.cols()));
-    if (each.cols() > 0) out[name] = std::make_shared<const MatrixX>(std::move(seen));
+    if (each.cols() > 0) out[spot] = std::make_shared<const MatrixX>(std::move(seen));
     at += each.cols();
   }
   return out;

@@ -4,45 +4,48 @@
 
 #include <map>
 #include <memory>
-#include <mutex>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "validation/diagnosis/changes.h"
 
 namespace deflect::diagnosis {
 
-/// Any curve of deflection over force at a place of a machine (Changes::by_any_curve()). Computed when it is first
-/// asked for: all places together would take more memory than all else.
+/// Any curve of deflection over force at a place of a machine (Changes::by_any_curve()).
 class AnyCurve {
  public:
   AnyCurve(std::shared_ptr<const Observations>, std::shared_ptr<const Changes>, const effects::PlacedEffect& at);
-  const MatrixX& columns() const;
+  /// Computed at each call: kept for all places they would take more memory than all else.
+  MatrixX columns() const;
 
  private:
   std::shared_ptr<const Observations> observations_;
   std::shared_ptr<const Changes> changes_;
   effects::PlacedEffect at_;
-  mutable std::once_flag once_;
-  mutable MatrixX columns_;
 };
+
+/// A place in all legs (0) or in one of them, by a name of its own; all that can be wrong with a sensor is at one.
+using Spot = std::pair<std::string, int>;
+Spot spot_of(const subject::Place&, std::optional<int> leg);
 
 class WhateverTheLaw {
  public:
-  /// `of_parts`: Changes::by_whatever(), by the path of the part.
-  WhateverTheLaw(const Observations&, std::shared_ptr<const Changes>, const std::map<std::string, MatrixX>& of_parts);
+  /// `of_parts`: Changes::by_whatever().
+  WhateverTheLaw(const Observations&, std::shared_ptr<const Changes>, const std::map<Spot, MatrixX>& of_parts);
 
-  /// At sensors, loads and members of frames; null elsewhere, and at groups.
-  std::shared_ptr<const MatrixX> at(const effects::PlacedEffect&) const;
+  /// At sensors, members, and loads of frames; null elsewhere, and at groups.
+  std::shared_ptr<const MatrixX> at(const subject::Place&, std::optional<int> leg) const;
   /// Where an effect in a machine acts; null where statics does not tell the forces.
   std::shared_ptr<const AnyCurve> curve_at(const effects::PlacedEffect&) const;
 
  private:
-  using Shapes = std::map<std::string, std::shared_ptr<const MatrixX>>;
-  Shapes whitened(const std::map<std::string, MatrixX>&) const;
+  using Shapes = std::map<Spot, std::shared_ptr<const MatrixX>>;
+  Shapes whitened(const std::map<Spot, MatrixX>&) const;
 
   std::shared_ptr<const Observations> observations_;
   std::shared_ptr<const Changes> changes_;
-  Shapes sensors_, parts_;
+  Shapes all_;
 };
 
 }  // namespace deflect::diagnosis

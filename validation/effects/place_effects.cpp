@@ -48,19 +48,6 @@ std::vector<EffectEdit> edits_of(const PlaceLaw& law, const subject::Place& p,
   return out;
 }
 
-/// As name_of(); in a sentence a frame's member, its end and a load say what they are.
-std::string words_of(const subject::Place& p) {
-  const std::string name = subject::name_of(p);
-  if (!p.others.empty()) return name;
-  if (p.path == "rig.load_cell") return "load";
-  if (p.path == "rig.sensor") return "displacement sensor";
-  if (p.path.starts_with("loads.")) return "load " + p.path.substr(std::string("loads.").size());
-  if (!p.path.starts_with("members.")) return name;
-  const std::size_t dot = p.part.rfind('.');
-  if (p.kind != subject::PlaceKind::member_end || dot == std::string::npos) return "member " + name;
-  return fmt::format("{} of {}{}", p.part.substr(dot + 1), p.part.substr(0, dot), name.substr(p.part.size()));
-}
-
 Effect effect_of(const PlaceLaw& law, const subject::Place& p, bool several_legs, bool one_leg) {
   Effect e;
   const std::string words = words_of(p);
@@ -99,6 +86,18 @@ std::optional<std::string> key_of(const Effect& e, const subject::Subject& subje
 }
 
 }  // namespace
+
+std::string words_of(const subject::Place& p) {
+  const std::string name = subject::name_of(p);
+  if (!p.others.empty()) return name;
+  if (p.path == "rig.load_cell") return "load";
+  if (p.path == "rig.sensor") return "displacement sensor";
+  if (p.path.starts_with("loads.")) return "load " + p.path.substr(std::string("loads.").size());
+  if (!p.path.starts_with("members.")) return name;
+  const std::size_t dot = p.part.rfind('.');
+  if (p.kind != subject::PlaceKind::member_end || dot == std::string::npos) return "member " + name;
+  return fmt::format("{} of {}{}", p.part.substr(dot + 1), p.part.substr(0, dot), name.substr(p.part.size()));
+}
 
 std::vector<Effect> place_effects(const subject::Subject& subject, const std::vector<Effect>& named) {
   std::set<std::string> known;

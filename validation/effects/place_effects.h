@@ -33,12 +33,17 @@
 // Their ids are law@place: "clearance@elbow.rz" of every leg, "clearance@leg.elbow.rz" of one leg.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "validation/effects/effect.h"
 #include "validation/subject/subject.h"
 
 namespace deflect::effects {
+
+/// The place in a sentence: subject::name_of(), but a frame's member, its end, a load and the sensor of a
+/// machine say what they are: "member C1b", "displacement sensor".
+std::string words_of(const subject::Place&);
 
 /// The laws at the subject's places, without those whose edits are the same as those of one of the `named` effects.
 std::vector<Effect> place_effects(const subject::Subject&, const std::vector<Effect>& named);

@@ -51,7 +51,7 @@ export function candidates(d) {
 export function unexplained(d) {
   const {significant, share_of_misfit, pattern, localised = [], nearest, nearest_share} = d.unexplained;
   if (!significant) return null;
-  const rows = [...localised.map((l) => [`at this place, most like: ${l.what}`, l.share, l.probability]),
+  const rows = [...localised.map((l) => [`at this place${l.effect ? ", most like" : ""}: ${l.what}`, l.share, l.probability]),
     ...(nearest ? [[`nearest entry: ${nearest}`, nearest_share, '–']] : [])];
   const columns = ['', 'share', 'probability of the place'];
   return figure('unexplained', 'What is left unexplained', `${num(100 * share_of_misfit, 3)} % of the misfit beyond noise and tolerances: ${pattern}. Of that explains:`,

@@ -101,8 +101,8 @@ Json unexplained_json(const diagnosis::Diagnosis& d) {
     localised.push_back({{"what", l.what},
                          {"share", l.share},
                          {"probability", l.probability},
-                         {"effect", l.effect.effect->name},
-                         {"place", place_json(whole_place(*l.effect.effect->place), l.effect.leg)}});
+                         {"effect", l.effect ? Json(l.effect->name) : Json()},
+                         {"place", place_json(whole_place(l.place), l.leg)}});
   return {{"significant", d.unexplained}, {"share_of_misfit", d.share_unexplained},
           {"pattern", d.pattern},         {"localised", localised},
           {"nearest", d.nearest},         {"nearest_share", d.nearest_share}};
@@ -178,8 +178,8 @@ std::string diagnosis_report(const diagnosis::Diagnosis& d, const std::string& d
   if (d.unexplained) {
     out += fmt::format("left unexplained: {:.0f} % of the misfit; of that", 100 * d.share_unexplained);
     for (const diagnosis::Localised& l : d.localised)
-      out += fmt::format(" {:.0f} % at one place, most like '{}' (probability of this place {:.2f});", 100 * l.share,
-                         l.what, l.probability);
+      out += fmt::format(" {:.0f} % at one place, {}'{}' (probability of this place {:.2f});", 100 * l.share,
+                         l.effect ? "most like " : "", l.what, l.probability);
     if (!d.nearest.empty()) out += fmt::format(" the nearest entry, {}, {:.0f} %", d.nearest, 100 * d.nearest_share);
     out += "\n";
   }

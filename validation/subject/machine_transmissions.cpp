@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include "analytic/model.h"
@@ -50,6 +51,20 @@ std::string described(std::string part) {
   return part;
 }
 
+/// What yields anywhere along a member by a linear law does so at these two sections alike: forces are linear along it,
+/// and so is what a section's motion does at T (Gauss's rule with two points, exact to the third power).
+std::array<PlacedJoint, 2> sections_of(const PlacedMember& member) {
+  std::array<PlacedJoint, 2> out;
+  const double apart = 0.5 / std::sqrt(3.0);
+  for (std::size_t i = 0; i < 2; ++i) {
+    out[i].part = member.part;
+    out[i].p_W = member.p_W_start + (0.5 + (i == 0 ? -apart : apart)) * Vector3(member.p_W_end - member.p_W_start);
+    out[i].R_WJ = member.R_WM;
+    out[i].laws.fill({LinearLaw{1}});
+  }
+  return out;
+}
+
 class Forces {
  public:
   Forces(const Vector3& p_WT, ByPart& out) : p_WT_(p_WT), out_(out) {}
@@ -61,18 +76,22 @@ class Forces {
     for (const PlacedPart& part : placed.parts) {
       if (const auto* joint = std::get_if<PlacedJoint>(&part)) {
         add(*joint, W, number, nested);
+      } else if (const auto* member = std::get_if<PlacedMember>(&part)) {
+        for (const PlacedJoint& section : sections_of(*member)) add(section, W, number, nested, member->length() / 2);
       } else if (const auto* parallel = std::get_if<PlacedParallel>(&part)) {
         branches(*parallel, chain.groups.at(group++), W, number, nested);
       }
     }
   }
 
-  void add(const PlacedJoint& joint, const Matrix6& W, int number, const std::vector<std::string>& nested) {
+  /// `compliance`: of each of its freedoms, times which a law's there counts.
+  void add(const PlacedJoint& joint, const Matrix6& W, int number, const std::vector<std::string>& nested,
+           double compliance = 1) {
     Freedom6 here;
     here.leg = number;
     for (std::size_t i = 0; i < 6; ++i) {
       here.there[i] = !joint.laws[i].empty();
-      here.g[i] = W.transpose() * analytic::freedom_twist(joint, i, p_WT_);
+      here.g[i] = std::sqrt(compliance) * W.transpose() * analytic::freedom_twist(joint, i, p_WT_);
     }
     for (const std::string& before : nested) out_.emplace(before + described(joint.part), here);
   }

@@ -260,12 +260,15 @@ class Splitting(Record):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Localised(Record):
-    """Where what is left unexplained acts; ``probability`` that it is there and nowhere else."""
+    """Where what is left unexplained acts; ``probability`` that it is there and nowhere else.
+
+    ``effect``: of the laws at the place the one that explains most, None where none acts there.
+    """
 
     what: str
     share: float
     probability: float
-    effect: str
+    effect: Optional[str]
     place: PlaceOf
 
 
