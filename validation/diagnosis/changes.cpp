@@ -166,6 +166,8 @@ MatrixX Changes::by_any_elongation(const subject::Place& place) const {
 
 MatrixX Changes::by_any_section(const subject::Place& member, std::optional<int> leg) const {
   const compare::ResidualStudy& study = observations_.comparison().study;
+  // What a member as long as the machine would do by a unit law, which carries all loads.
+  const double size = study.standing->size(), loads = study.loads.cwiseAbs().maxCoeff();
   std::vector<MatrixX> out;
   for (const std::size_t freedom : {0u, 3u, 4u, 5u}) {  // x is along the member
     subject::Place sections = member;
@@ -174,7 +176,9 @@ MatrixX Changes::by_any_section(const subject::Place& member, std::optional<int>
     const auto told = transmissions_ ? transmissions_->change(sections, leg, same, *study.data) : std::nullopt;
     if (!told) continue;
     const VectorX change = -statistics::rows_of(study.values, *told);
-    if (const double length = change.norm(); length > 0) out.emplace_back(size_of_a_curve / length * change);
+    const double carrying_all = loads * std::pow(size, freedom < 3 ? 1 : 3);
+    if (change.cwiseAbs().maxCoeff() > no_force * carrying_all)
+      out.emplace_back(size_of_a_curve / change.norm() * change);
   }
   return statistics::side_by_side(out, null_.size());
 }
