@@ -46,11 +46,11 @@ Spot spot_of(const subject::Place& p, std::optional<int> leg) {
 
 WhateverTheLaw::WhateverTheLaw(const Observations& o, std::shared_ptr<const Changes> changes,
                                const std::map<Spot, MatrixX>& of_parts)
-    : observations_(std::make_shared<const Observations>(o)), changes_(std::move(changes)) {
-  std::map<Spot, MatrixX> all = of_parts;
+    : observations_(std::make_shared<const Observations>(o)), changes_(std::move(changes)), all_(whitened(of_parts)) {
+  std::map<Spot, MatrixX> of_sensors;
   for (auto& [sensor, shapes] : compare::channel_shapes(o.comparison().study))
-    all.emplace(Spot("sensors." + sensor, 0), std::move(shapes));
-  all_ = whitened(all);
+    of_sensors.emplace(Spot("sensors." + sensor, 0), std::move(shapes));
+  all_.merge(whitened(of_sensors));
 }
 
 std::shared_ptr<const MatrixX> WhateverTheLaw::at(const subject::Place& place, std::optional<int> leg) const {
@@ -63,18 +63,26 @@ std::shared_ptr<const AnyCurve> WhateverTheLaw::curve_at(const effects::PlacedEf
   return std::make_shared<const AnyCurve>(observations_, changes_, e);
 }
 
-/// All of them at once, which takes a fraction of the time.
+/// Several columns at once, which takes a fraction of the time; all at once would take as much memory again, twice.
 WhateverTheLaw::Shapes WhateverTheLaw::whitened(const std::map<Spot, MatrixX>& all) const {
-  std::vector<MatrixX> shapes;
-  for (const auto& [spot, each] : all) shapes.push_back(each);
+  constexpr Eigen::Index at_once = 16;
   const auto numbers = as_index(observations_->comparison().sigma.size());
-  const MatrixX raw = statistics::side_by_side(shapes, numbers), white = observations_->uncertainty().whitened(raw);
   Shapes out;
-  Eigen::Index at = 0;
-  for (const auto& [spot, each] : all) {
-    MatrixX seen = that_are_seen(*observations_, each, white.middleCols(at, each.cols()));
-    if (each.cols() > 0) out[spot] = std::make_shared<const MatrixX>(std::move(seen));
-    at += each.cols();
+  for (auto next = all.begin(); next != all.end();) {
+    std::vector<MatrixX> raw;
+    Eigen::Index columns = 0;
+    for (auto some = next; some != all.end() && columns < at_once; ++some) {
+      raw.push_back(some->second);
+      columns += some->second.cols();
+    }
+    const MatrixX white = observations_->uncertainty().whitened(statistics::side_by_side(raw, numbers));
+    Eigen::Index at = 0;
+    for (const MatrixX& each : raw) {
+      MatrixX seen = that_are_seen(*observations_, each, white.middleCols(at, each.cols()));
+      if (each.cols() > 0) out[next->first] = std::make_shared<const MatrixX>(std::move(seen));
+      at += each.cols();
+      ++next;
+    }
   }
   return out;
 }
