@@ -266,6 +266,31 @@ TEST(SearchLimits, AnEntryAtABoundIsNamedWhereItIsLikelierThanTheLawThatDoesAsWe
   }
 }
 
+// Beside two or more effects the search goes on only while they are not enough, whatever a third one explains.
+TEST(SearchLimits, NoFurtherEffectIsLookedForWhereTheseAreEnough) {
+  std::vector<Effect> effects;
+  for (Eigen::Index i = 0; i < 3; ++i) effects.push_back(along(fmt::format("e{}", i), axis(6, i)));
+  const Seen s = seen(30 * axis(6, 0) + 25 * axis(6, 1) + 20 * axis(6, 2));
+  const std::vector<Signature> all = signatures(s.observations, effects, 1);
+  const Candidates candidates(all, 1);
+  const std::vector<Candidate> first = first_of(s, candidates, -1e6);
+  std::vector<std::size_t> asked;
+  const auto found = [&](bool enough) {
+    asked.clear();
+    return select(s.observations, candidates, first,
+                  [&](const Selection& so_far) {
+                    asked.push_back(so_far.effects.size());
+                    return enough;
+                  })
+        .effects.size();
+  };
+  EXPECT_EQ(found(true), 2u);
+  EXPECT_EQ(asked, std::vector<std::size_t>{2});
+  EXPECT_EQ(found(false), 3u);
+  EXPECT_EQ(asked, (std::vector<std::size_t>{2, 3}));
+  EXPECT_EQ(select(s.observations, candidates, first).effects.size(), 3u);
+}
+
 /// What a tilt of 20 and something unknown of 12 do, and a little in a reading of its own.
 VectorX much() { return 20 * axis(8, 0) + 12 * axis(8, 2) + 5 * axis(8, 5); }
 

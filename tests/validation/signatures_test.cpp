@@ -10,6 +10,7 @@
 
 #include "msa/base/index.h"
 #include "tests/support/effects.h"
+#include "validation/diagnosis/bootstrap.h"
 #include "validation/measurement/random.h"
 #include "validation/statistics/columns.h"
 #include "validation/statistics/tail.h"

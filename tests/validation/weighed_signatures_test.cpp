@@ -8,7 +8,7 @@
 #include "msa/frame/file/frame_file.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects_everywhere.h"
-#include "validation/diagnosis/signatures.h"
+#include "validation/diagnosis/at_places.h"
 #include "validation/measurement/random.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
@@ -118,6 +118,52 @@ TEST(WeighedSignaturesOfATripteron, KnowWhatOnlyReadingsSetAsideShow) {
   expect_same(all, SignaturesAtPlaces(with, l.effects, 1));
   all.weigh_for(without, 1);
   expect_same(all, SignaturesAtPlaces(without, l.effects, 1));
+}
+
+// What was found moves the tolerances, and other readings are gross outliers then. Seen by such observations, laws and
+// what else may happen at their places are as after a weighing for these.
+TEST(Weighed, AreThoseOfObservationsWithWhatWasFound) {
+  const Looked l("scara");
+  const SignaturesAtPlaces all(l.o.keeping(l.some(0.1, 1)), l.effects, 2);
+  const auto softer = std::find_if(l.effects.begin(), l.effects.end(),
+                                   [](const effects::Effect& e) { return e.name == "factor@fore_link"; });
+  ASSERT_NE(softer, l.effects.end());
+  const Observations granted =
+      l.o.keeping(l.some(0.3, 2)).granted(subject_with(l.o, {{&*softer, {}}}, VectorX::Constant(1, 0.1)));
+  ASSERT_FALSE(all.are_weighed_for(granted));
+  SignaturesAtPlaces again = all;
+  again.weigh_for(granted, 2);
+  EXPECT_TRUE(again.are_weighed_for(granted));
+  const Weighed seen(all, granted);
+  const auto expect_same_columns = [](const MatrixX& a, const MatrixX& b, const std::string& name) {
+    ASSERT_EQ(a.cols(), b.cols()) << name;
+    ASSERT_EQ(a.rows(), b.rows()) << name;
+    if (a.cols() > 0) {
+      EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-9) << name;
+    }
+  };
+  std::size_t moved = 0, compared = 0, whatever = 0, curves = 0;
+  for (const Signature& s : all.all()) {
+    const std::string name = name_of(s.effect);
+    const auto same_law = [&](const Signature& other) { return same(other.effect, s.effect); };
+    const auto fresh = std::find_if(again.all().begin(), again.all().end(), same_law);
+    const Signature law = seen.law(s);
+    ASSERT_EQ(fresh == again.all().end(), law.basis.cols() == 0) << name;
+    if (law.basis.cols() == 0) continue;
+    expect_same_columns(law.basis, fresh->basis, name);
+    EXPECT_LT((law.start - fresh->start).norm(), 1e-9 * fresh->lambda) << name;
+    expect_same_columns(seen.whatever(s), fresh->whatever_the_law ? *fresh->whatever_the_law : MatrixX(), name);
+    ASSERT_EQ(law.any_curve == nullptr, fresh->any_curve == nullptr) << name;
+    if (law.any_curve) expect_same_columns(law.any_curve->columns(), fresh->any_curve->columns(), name);
+    ++compared;
+    moved += std::abs(law.lambda - s.lambda) > 0.1 * s.lambda;
+    whatever += seen.whatever(s).cols() > 0;
+    curves += law.any_curve != nullptr;
+  }
+  EXPECT_GE(compared, 200u);
+  EXPECT_GE(moved, 20u);
+  EXPECT_GE(whatever, 5u);
+  EXPECT_GE(curves, 50u);
 }
 
 // A load that is turned is another force at its nodes, a bar of another stiffness one of another elongation: both are

@@ -58,25 +58,31 @@ std::vector<LawsAtPlace> laws_by_place(const Explanations& all) {
 const AnyCurve* curve_of(const LawsAtPlace& p) { return p.without ? nullptr : p.laws.front()->any_curve.get(); }
 
 /// By all laws at a place, or by any curve there as well.
-AtPlace explained_by(const LawsAtPlace& place, const VectorX& residual, const MatrixX& fitted, bool any_curve) {
+AtPlace explained_by(const Weighed& all, const LawsAtPlace& place, const VectorX& residual, const MatrixX& fitted,
+                     bool any_curve) {
   AtPlace out;
   out.without_law = place.without;
   out.prior = (curve_of(place) ? half : 1) * place.prior;
   double most = -1;
   std::vector<MatrixX> columns;
+  std::shared_ptr<const AnyCurve> curve;
   const auto add = [&](const MatrixX& basis) {
+    if (basis.cols() == 0) return;
     const MatrixX beside = basis - fitted * (fitted.transpose() * basis);
     for (const auto column : beside.colwise())
       if (column.norm() > left_of_a_column) columns.emplace_back(column);
   };
   for (const Signature* s : place.laws) {
-    if (const double gain = most_gain(*s, residual, fitted); gain > most) most = gain, out.best = s;
-    add(s->basis);
+    const Signature law = all.law(*s);
+    add(law.basis);
+    if (s == place.laws.front()) curve = law.any_curve;
+    const double gain = most_gain(law, residual, fitted);
+    if (gain <= most) continue;
+    most = gain, out.best = s;
+    out.other_way = law.one_sided && law.start_along(residual) > 0;
   }
-  const auto& whatever = place.without ? place.without->whatever_the_law : place.laws.front()->whatever_the_law;
-  if (whatever) add(*whatever);
-  if (any_curve) add(curve_of(place)->columns());
-  out.other_way = out.best && out.best->one_sided && out.best->start_along(residual) > 0;
+  add(place.without ? all.whatever(*place.without) : all.whatever(*place.laws.front()));
+  if (any_curve) add(curve->columns());
   if (columns.empty()) return out;
   const MatrixX together = statistics::side_by_side(columns, residual.size());
   columns.clear();
@@ -123,17 +129,37 @@ std::string words_of(const AtPlace& p) {
 
 }  // namespace
 
-std::vector<AtPlace> at_places(const Explanations& all, const Hypothesis& effects, const Fit& fit, int threads) {
+Weighed::Weighed(const SignaturesAtPlaces& s, const Observations& o) : all_(&s.known()) {
+  if (s.are_weighed_for(o)) return;
+  signatures_ = &s;
+  observations_ = std::make_shared<const Observations>(o);
+}
+
+Signature Weighed::law(const Signature& s) const {
+  return signatures_ ? signatures_->law_seen_by(observations_, as_size(&s - all_->laws.data())) : s;
+}
+
+MatrixX Weighed::whatever(const Signature& s) const {
+  if (!s.whatever_the_law) return {};
+  return signatures_ ? signatures_->whatever_seen_by(*observations_, *s.effect.effect->place, s.effect.leg)
+                     : *s.whatever_the_law;
+}
+
+MatrixX Weighed::whatever(const PlaceWithoutLaw& p) const {
+  return signatures_ ? signatures_->whatever_seen_by(*observations_, p.place, p.leg) : *p.whatever_the_law;
+}
+
+std::vector<AtPlace> at_places(const Weighed& all, const Hypothesis& effects, const Fit& fit, int threads) {
   const MatrixX fitted =
       fit.signature.cols() > 0 ? statistics::orthonormal(fit.signature) : MatrixX(fit.residual.size(), 0);
-  const std::vector<LawsAtPlace> places = laws_by_place(all);
+  const std::vector<LawsAtPlace> places = laws_by_place(all.all());
   std::vector<AtPlace> out(places.size());
   parallel::for_each_case(places.size(), 1, threads,
-                          [&](std::size_t i) { out[i] = explained_by(places[i], fit.residual, fitted, false); });
+                          [&](std::size_t i) { out[i] = explained_by(all, places[i], fit.residual, fitted, false); });
   const std::vector<std::size_t> curved = worth_any_curve(places, out, effects);
   parallel::for_each_case(curved.size(), 1, threads, [&](std::size_t k) {
     AtPlace& at = out[curved[k]];
-    const AtPlace any = explained_by(places[curved[k]], fit.residual, fitted, true);
+    const AtPlace any = explained_by(all, places[curved[k]], fit.residual, fitted, true);
     if (log_evidence(any.gain, any.dimension, false) > log_evidence(at.gain, at.dimension, false)) at = any;
   });
   std::erase_if(out, [](const AtPlace& p) { return p.dimension == 0; });

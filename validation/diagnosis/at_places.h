@@ -18,6 +18,27 @@
 
 namespace deflect::diagnosis {
 
+/// Explanations as these observations weigh them. What was found counts as right (Observations::granted()), which moves
+/// the tolerances; a residual weighed so is to be explained by columns weighed alike.
+class Weighed {
+ public:
+  Weighed(const Explanations& as_they_are) : all_(&as_they_are) {}
+  /// The signatures must outlive it.
+  Weighed(const SignaturesAtPlaces&, const Observations&);
+
+  const Explanations& all() const { return *all_; }
+  /// One of the laws of all(). Computed at each call, as they all are: kept they would take as much memory again.
+  Signature law(const Signature&) const;
+  /// Empty where there is nothing.
+  MatrixX whatever(const Signature&) const;
+  MatrixX whatever(const PlaceWithoutLaw&) const;
+
+ private:
+  const Explanations* all_;
+  const SignaturesAtPlaces* signatures_ = nullptr;
+  std::shared_ptr<const Observations> observations_ = nullptr;
+};
+
 /// A place in all legs, or in one of them.
 struct AtPlace {
   const Signature* best = nullptr;  ///< of the laws at the place the one that explains most; null without any
@@ -32,8 +53,9 @@ struct AtPlace {
 };
 
 /// Beside the fit of these effects, in the order of the signatures; places whose laws do nothing beside it are left
-/// out. Any curve is tried at the places of the effects too. The explanations must outlive the result.
-std::vector<AtPlace> at_places(const Explanations&, const Hypothesis& fitted, const Fit&, int threads);
+/// out. Any curve is tried at the places of the effects too. The explanations must be weighed as the fit is and outlive
+/// the result.
+std::vector<AtPlace> at_places(const Weighed&, const Hypothesis& fitted, const Fit&, int threads);
 
 /// ln of the evidence that an unknown law acts at one of the places, over all places by their priors. ln 0 without any.
 double log_evidence(const std::vector<AtPlace>&);

@@ -32,6 +32,17 @@ double gain(const Signature& s, double sense, const Components& z) {
 
 }  // namespace
 
+double single_p_value(const Signature& s, double gain) {
+  if (!(gain > 0)) return 1;
+  const double p = statistics::chi_squared_tail(s.amplitudes(), gain);
+  return s.one_sided ? p / 2 : p;
+}
+
+double gain_at_p_value(const Signature& s, double p) {
+  const double own = s.one_sided ? 2 * p : p;
+  return own < 1 ? statistics::chi_squared_at_tail(s.amplitudes(), own) : 0;
+}
+
 double chance_of_any(const std::vector<Signature>& all, const MatrixX& inner, double least_p, int sets_drawn,
                      const parallel::Work& work, const Counted& counted) {
   if (all.empty() || !(least_p < 1)) return 1;

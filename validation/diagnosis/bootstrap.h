@@ -23,4 +23,10 @@ double chance_of_any(const std::vector<Signature>&, const MatrixX& inner, double
 /// The least p-value of candidates alone, in the order of their signatures, divided by their weights.
 double least_p_value(const std::vector<Signature>&, const std::vector<Candidate>&);
 
+/// p-value of a gain in χ² as if this were the only effect tested.
+double single_p_value(const Signature&, double gain);
+
+/// The gain with this p-value; 0 where every gain has a smaller p-value.
+double gain_at_p_value(const Signature&, double p);
+
 }  // namespace deflect::diagnosis

@@ -48,13 +48,8 @@ void weigh(Diagnosis& d, const LargerTolerances& larger, double unknown, double 
   d.probability_unknown = unknown;
 }
 
-/// Probability of a discrepancy of that evidence in its favour, with its prior odds.
-double probability_of_unknown(double log_evidence, double prior_odds) {
-  return 1 / (1 + std::exp(-log_evidence) / prior_odds);
-}
-
 /// Of what is left unexplained: its size, its pattern, where it acts, the entry that comes nearest.
-void describe_left_over(Diagnosis& d, const Explanations& known, const Selection& found, int threads) {
+void describe_left_over(Diagnosis& d, const Weighed& known, const Selection& found, int threads) {
   const Observations& o = found.observations;
   const auto numbers = static_cast<double>(o.numbers());
   const double left = std::max(1.0, found.fit.chi2 - numbers);
@@ -62,12 +57,13 @@ void describe_left_over(Diagnosis& d, const Explanations& known, const Selection
   d.pattern = pattern_left(o, subject_with(o, found.effects, found.fit.values));
   d.localised = localised(at_places(known, found.effects, found.fit, threads), found.fit.chi2, numbers);
   const MatrixX fitted = statistics::orthonormal(found.fit.signature);
-  for (const Signature& s : known.laws)
-    if (const double share = most_gain(s, found.fit.residual, fitted) / left;
-        !s.effect.effect->place && share > d.nearest_share) {
+  for (const Signature& s : known.all().laws) {
+    if (s.effect.effect->place) continue;
+    if (const double share = most_gain(known.law(s), found.fit.residual, fitted) / left; share > d.nearest_share) {
       d.nearest = name_of(s.effect);
       d.nearest_share = std::min(1.0, share);
     }
+  }
 }
 
 void sort_candidates(Diagnosis& d) {
@@ -151,8 +147,8 @@ struct FirstStep {
 
   double probability_of_unknown_alone(const std::vector<Candidate>& alone) const {
     constexpr double missing_odds = Candidates::prior_missing / (1 - Candidates::prior_missing);
-    return probability_of_unknown(left.log_evidence - log_sum_exp(log_weights(alone, larger)),
-                                  missing_odds * Candidates::prior_unknown);
+    return probability_of(left.log_evidence - log_sum_exp(log_weights(alone, larger)),
+                          missing_odds * Candidates::prior_unknown);
   }
 
   const std::vector<Signature>& all() const { return signatures.all(); }
@@ -199,13 +195,17 @@ struct Explained {
 Explained nothing(const FirstStep& s) { return {{s.observations, {}, s.null, {}, {}}, {}}; }
 
 Explained explained(const FirstStep& s, const Candidates& candidates, const std::vector<Candidate>& first) {
-  Explained out{select(s.observations, candidates, first), {}};
+  const auto enough = [&](const Selection& so_far) {
+    return is_all_at_one_place(Weighed(s.signatures, so_far.observations), candidates, so_far);
+  };
+  Explained out{select(s.observations, candidates, first, enough), {}};
   out.patterns = out.found.observations.whitened_patterns();
-  out.left = left_over(out.patterns, s.signatures.known(), out.found.effects, out.found.fit, candidates.threads());
-  const double more = out.left.significant() ? 0 : called_for - std::log(Candidates::prior_unknown);
-  if (std::optional<Selection> there = at_one_place(s.signatures.known(), candidates, out.found, more)) {
+  const Weighed known(s.signatures, out.found.observations);
+  out.left = left_over(out.patterns, known, out.found.effects, out.found.fit, candidates.threads());
+  const double more = out.left.significant() ? 0 : clearly_one_place;
+  if (std::optional<Selection> there = at_one_place(known, candidates, out.found, more)) {
     out.found = std::move(*there);
-    out.left = left_over(out.patterns, s.signatures.known(), out.found.effects, out.found.fit, candidates.threads());
+    out.left = left_over(out.patterns, known, out.found.effects, out.found.fit, candidates.threads());
   }
   if (!out.left.significant()) out.patterns.reset();
   return out;
@@ -238,8 +238,7 @@ bool outweigh_larger_tolerances(const Explained& e, const FirstStep& s) {
 
 /// Whether a single large effect may explain more than what was found: that is several, or leaves more than noise does.
 bool may_hide_a_large_one(const Explained& e, const Observations& o) {
-  const auto numbers = static_cast<double>(o.numbers());
-  const double by_noise = numbers + 2 * std::sqrt(2 * numbers);  // χ², two standard deviations of it
+  const double by_noise = most_by_noise(static_cast<double>(o.numbers()));
   return e.left.significant() || e.found.effects.size() > 1 || e.found.fit.chi2 > by_noise;
 }
 
@@ -280,15 +279,15 @@ void conclude(Diagnosis& d, Explained e, const FirstStep& told, const measuremen
   d.candidates = told.candidates.fitted_again(told.observations, told.null, d.candidates, as_fitted(found));
   d.unexplained = e.left.significant();
   d.log_odds_unknown = e.left.log_evidence + std::log(unknown_beside);
-  if (!found.effects.empty())
-    weigh(d, told.larger, probability_of_unknown(e.left.log_evidence, unknown_beside), together);
+  if (!found.effects.empty()) weigh(d, told.larger, probability_of(e.left.log_evidence, unknown_beside), together);
   // In the first step something unknown counts for more than beside what was found: there nothing may be likelier.
   if (!d.unexplained && d.probability_nothing >= rather_nothing) found = nothing(told).found;
   sort_candidates(d);
   if (d.unexplained) {
-    found = named_beside_unknown(e.patterns, told.signatures.known(), told.candidates, std::move(found));
+    const Weighed known(told.signatures, found.observations);
+    found = named_beside_unknown(e.patterns, known, told.candidates, std::move(found));
     e.patterns.reset();
-    describe_left_over(d, told.signatures.known(), found, threads);
+    describe_left_over(d, known, found, threads);
   }
   const Observations& seen = found.observations;
   d.missing = found.effects;

@@ -17,6 +17,10 @@ double log_mean_exp(const std::vector<double>& x) {
 
 double log_sum_exp(const std::vector<double>& x) { return log_mean_exp(x) + std::log(static_cast<double>(x.size())); }
 
+double probability_of(double log_evidence, double prior_odds) { return 1 / (1 + std::exp(-log_evidence) / prior_odds); }
+
+double most_by_noise(double numbers) { return numbers + 2 * std::sqrt(2 * numbers); }
+
 std::vector<double> log_spaced(double low, double high, int count) {
   std::vector<double> out;
   for (int i = 0; i < count; ++i) out.push_back(low * std::pow(high / low, (i + 0.5) / count));

@@ -23,9 +23,15 @@ double log_evidence(double gain, int parameters, bool one_sided);
 /// Probabilities of hypotheses from ln(prior · evidence).
 std::vector<double> normalised(const std::vector<double>& log_weights);
 
+/// Of what has this evidence in its favour, and these odds before any reading.
+double probability_of(double log_evidence, double prior_odds);
+
 /// ln of the mean and of the sum of exp(x).
 double log_mean_exp(const std::vector<double>& x);
 double log_sum_exp(const std::vector<double>& x);
+
+/// χ² of so many numbers with two of its standard deviations: more is not noise alone.
+double most_by_noise(double numbers);
 
 /// `count` numbers between low and high, evenly spaced in their logarithm, none at the ends.
 std::vector<double> log_spaced(double low, double high, int count);

@@ -371,4 +371,16 @@ bool runs_to_a_bound(const Hypothesis& h, const Fit& f) {
   return false;
 }
 
+bool turns_as_it_grows(const effects::Effect& e) {
+  if (!e.place || e.parameters.size() != 1) return false;
+  const effects::EffectParameter& p = e.parameters.front();
+  return p.log && p.vanishes && p.low < *p.vanishes && *p.vanishes < p.high && !e.place->one_stiffness;
+}
+
+bool at_one_place(const effects::PlacedEffect& a, const effects::PlacedEffect& b) {
+  const std::optional<subject::Place>&at = a.effect->place, &other = b.effect->place;
+  return at && other && a.leg == b.leg && a.effect->scope == b.effect->scope &&
+         subject::id_of(*at) == subject::id_of(*other);
+}
+
 }  // namespace deflect::diagnosis

@@ -81,4 +81,11 @@ bool is_shaped(const effects::PlacedEffect&);
 /// Whether physics fixes the sign of the effect's amplitude (one parameter, which vanishes at a bound).
 bool one_sided(const effects::PlacedEffect&);
 
+/// A factor on several stiffnesses at once, as those of a beam: where it is large it moves the readings in another
+/// direction than a little of it. (A single stiffness keeps its direction: K changes by a rank-one term.)
+bool turns_as_it_grows(const effects::Effect&);
+
+/// Of two laws at places.
+bool at_one_place(const effects::PlacedEffect&, const effects::PlacedEffect&);
+
 }  // namespace deflect::diagnosis

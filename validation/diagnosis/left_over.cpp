@@ -25,17 +25,17 @@ const AtPlace* likeliest(const std::vector<AtPlace>& places) {
   return out;
 }
 
-bool at_the_same_part(const effects::PlacedEffect& e, const AtPlace& p) {
-  return e.effect->place && subject::of_one_part(*e.effect->place, p.place());
+bool at_the_same_part(const effects::PlacedEffect& e, const subject::Place& p) {
+  return e.effect->place && subject::of_one_part(*e.effect->place, p);
 }
 
 /// Whether an unknown law at another place takes what this effect explains: with the effect and a law at a place the
 /// readings are not clearly likelier than with a law at a place alone.
 bool is_a_law_elsewhere(const effects::PlacedEffect& e, const Selection& with, const Hypothesis& others,
-                        const Fit& without, const Explanations& all, const Candidates& candidates) {
+                        const Fit& without, const Weighed& all, const Candidates& candidates) {
   const std::vector<AtPlace> alone = at_places(all, others, without, candidates.threads());
   const AtPlace* place = likeliest(alone);
-  if (!place || at_the_same_part(e, *place)) return false;
+  if (!place || at_the_same_part(e, place->place())) return false;
   const double more = log_evidence(at_places(all, with.effects, with.fit, candidates.threads())) - log_evidence(alone);
   return candidates.class_log_odds_of(e, std::max(0.0, without.chi2 - with.fit.chi2)) + more < called_for;
 }
@@ -81,7 +81,7 @@ std::string pattern_left(const Observations& o, const subject::Subject& subject)
   return out.empty() ? no_pattern(o, subject) : out;
 }
 
-LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>& patterns, const Explanations& all,
+LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>& patterns, const Weighed& all,
                    const Hypothesis& fitted, const Fit& fit, int threads) {
   const Discrepancy common(patterns, fit.signature);
   const std::vector<AtPlace> places = at_places(all, fitted, fit, threads);
@@ -89,14 +89,20 @@ LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>& patterns, cons
           std::min(1.0, 2 * std::min(common.p_value(fit.residual), p_value(places)))};
 }
 
-std::optional<Selection> at_one_place(const Explanations& all, const Candidates& candidates, const Selection& s,
-                                      double more) {
-  if (s.effects.empty()) return std::nullopt;
+namespace {
+
+/// An unknown law at one place against the effects of a selection and an unknown law beside them.
+struct OnePlace {
+  const subject::Place* place = nullptr;  ///< null where the law is not likelier by what is asked
+  double left = 0;                        ///< of χ²
+};
+
+OnePlace one_place(const Weighed& all, const Candidates& candidates, const Selection& s, double more) {
   const Fit null = fit_of_all(s.observations, {}, VectorX(0));
   const std::vector<AtPlace> alone = at_places(all, {}, null, candidates.threads()),
                              beside = at_places(all, s.effects, s.fit, candidates.threads());
   const AtPlace *place = likeliest(alone), *further = likeliest(beside);
-  if (!place) return std::nullopt;
+  if (!place) return {};
   const double left = std::min(null.chi2 - place->gain, s.fit.chi2 - (further ? further->gain : 0));
   const double noise = std::max(1.0, left / std::max(1.0, static_cast<double>(s.observations.numbers())));
   const auto log_odds = [&](const AtPlace& p) {
@@ -104,6 +110,15 @@ std::optional<Selection> at_one_place(const Explanations& all, const Candidates&
   };
   const double found = log_odds_of_all(candidates, s.effects, (null.chi2 - s.fit.chi2) / noise) +
                        (further ? std::max(0.0, log_odds(*further)) : 0);
+  return {log_odds(*place) < found + more ? nullptr : &place->place(), null.chi2 - place->gain};
+}
+
+}  // namespace
+
+std::optional<Selection> at_one_place(const Weighed& all, const Candidates& candidates, const Selection& s,
+                                      double more) {
+  const subject::Place* place = s.effects.empty() ? nullptr : one_place(all, candidates, s, more).place;
+  if (!place) return std::nullopt;
   Selection there = s;
   for (std::size_t i = s.effects.size(); i-- > 0;) {
     if (at_the_same_part(s.effects[i], *place)) continue;
@@ -112,12 +127,17 @@ std::optional<Selection> at_one_place(const Explanations& all, const Candidates&
     there.fit.values = std::move(values);
     if (i < there.ties.size()) there.ties.erase(there.ties.begin() + as_index(i));
   }
-  if (there.effects.size() == s.effects.size() || log_odds(*place) < found + more) return std::nullopt;
+  if (there.effects.size() == s.effects.size()) return std::nullopt;
   there.fit = fit_of_all(s.observations, there.effects, there.fit.values);
   return there.fit.found ? std::optional(std::move(there)) : std::nullopt;
 }
 
-Selection named_beside_unknown(const std::shared_ptr<const WhitenedFamilies>& patterns, const Explanations& all,
+bool is_all_at_one_place(const Weighed& all, const Candidates& candidates, const Selection& s) {
+  const OnePlace there = one_place(all, candidates, s, clearly_one_place);
+  return there.place && there.left < most_by_noise(static_cast<double>(s.observations.numbers()));
+}
+
+Selection named_beside_unknown(const std::shared_ptr<const WhitenedFamilies>& patterns, const Weighed& all,
                                const Candidates& candidates, Selection s) {
   const Discrepancy common(patterns), left(patterns, s.fit.signature);
   const Discrepancy::Size size = left.likeliest(s.fit.residual);

@@ -2,6 +2,7 @@
 // beside it.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,8 +22,8 @@ struct LeftOver {
   static constexpr double least_p = 3e-3;
 };
 
-LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>&, const Explanations&, const Hypothesis& fitted,
-                   const Fit&, int threads);
+LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>&, const Weighed&, const Hypothesis& fitted, const Fit&,
+                   int threads);
 
 /// What this subject leaves, in words.
 std::string pattern_left(const Observations&, const subject::Subject&);
@@ -31,11 +32,18 @@ std::string pattern_left(const Observations&, const subject::Subject&);
 /// anew, where an unknown law there alone is likelier than all the effects and an unknown law beside them, by `more` in
 /// ln of the odds; nullopt where it is not, and where all effects are of that place. Noise counts as large as the
 /// better of the two leaves it.
-std::optional<Selection> at_one_place(const Explanations&, const Candidates&, const Selection&, double more);
+std::optional<Selection> at_one_place(const Weighed&, const Candidates&, const Selection&, double more);
+
+/// ln of the odds by which it must be likelier where effects alone leave nothing unknown.
+inline const double clearly_one_place = called_for - std::log(Candidates::prior_unknown);
+
+/// Whether that law is clearly likelier, whatever the places of the effects, and leaves no more than noise does: then
+/// no further effects are to be looked for.
+bool is_all_at_one_place(const Weighed&, const Candidates&, const Selection&);
 
 /// Those of the effects that are called for even beside something unknown: where it takes what a common pattern can,
 /// and where it is a law at a place other than the effect's own.
-Selection named_beside_unknown(const std::shared_ptr<const WhitenedFamilies>&, const Explanations&, const Candidates&,
+Selection named_beside_unknown(const std::shared_ptr<const WhitenedFamilies>&, const Weighed&, const Candidates&,
                                Selection);
 
 }  // namespace deflect::diagnosis

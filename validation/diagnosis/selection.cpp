@@ -101,6 +101,7 @@ class Search {
     return false;
   }
 
+  const Selection& so_far() const { return s_; }
   Selection&& result() { return std::move(s_); }
   std::size_t size() const { return s_.effects.size(); }
 
@@ -348,11 +349,13 @@ class Search {
 
 }  // namespace
 
-Selection select(const Observations& o, const Candidates& candidates, const std::vector<Candidate>& first) {
+Selection select(const Observations& o, const Candidates& candidates, const std::vector<Candidate>& first,
+                 const std::function<bool(const Selection&)>& enough) {
   Search search(o, candidates);
   if (!search.add(first, 0)) return search.result();
   for (std::size_t round = 0; round < most_rounds; ++round) {
     if (search.reconsider() || search.exchange_for_two()) continue;
+    if (enough && search.size() > 1 && enough(search.so_far())) return search.result();
     if (search.size() == most_effects || !search.add(search.further(), called_for)) return search.result();
   }
   search.note_ties();

@@ -7,6 +7,8 @@
 // unit, evidence calls for ever more; a fifth and a sixth are added where each takes off half of what the others leave.
 #pragma once
 
+#include <functional>
+
 #include "validation/diagnosis/candidates.h"
 
 namespace deflect::diagnosis {
@@ -29,8 +31,9 @@ struct Selection {
 inline constexpr double called_for = 4;
 
 /// After each step the effects found so far count as right (Observations::granted). `first`: candidates of the first
-/// step.
-Selection select(const Observations&, const Candidates&, const std::vector<Candidate>& first);
+/// step. `enough`: whether no further effect is to be looked for beside these, which are two or more.
+Selection select(const Observations&, const Candidates&, const std::vector<Candidate>& first,
+                 const std::function<bool(const Selection&)>& enough = {});
 
 /// Its effects and those that tie with them, with the values that were fitted last.
 std::vector<effects::EffectInstance> as_fitted(const Selection&);

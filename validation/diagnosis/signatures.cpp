@@ -8,10 +8,12 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
+#include "validation/compare/channel_shapes.h"
 #include "validation/diagnosis/changes.h"
 #include "validation/effects/law_of_effect.h"
 #include "validation/parallel/cases.h"
@@ -65,12 +67,6 @@ double cosine(const Signature& a, const Signature& b, const MatrixX& cross) {
   return Eigen::JacobiSVD<MatrixX>(cross).singularValues()(0);
 }
 
-double tail(int freedoms, bool one_sided, double gain) {
-  if (!(gain > 0)) return 1;
-  const double p = statistics::chi_squared_tail(freedoms, gain);
-  return one_sided ? p / 2 : p;
-}
-
 /// Of a law at a place, which is one of the subject's own.
 std::vector<effects::PlacedEffect> every_leg(const effects::Effect& e, const subject::Subject& subject) {
   if (e.scope != effects::Scope::one_leg) return {{&e, {}}};
@@ -95,6 +91,21 @@ void for_each_place(const subject::Subject& subject, const Does& does) {
     does(p, std::nullopt);
     for (int leg = 1; p.in_legs() && subject.legs() > 1 && leg <= subject.legs(); ++leg) does(p, std::optional(leg));
   }
+}
+
+/// The signature of a change, and the coordinates in its basis.
+std::pair<Signature, MatrixX> weighed(const effects::PlacedEffect& e, const Change& change,
+                                      const statistics::Whitening& whitening) {
+  const MatrixX white = whitening(change.columns);
+  Spanned spanned = change.shaped ? unit_columns(white) : orthonormal(white);
+  Signature s;
+  s.effect = e;
+  s.basis = std::move(spanned.basis);
+  s.shaped = change.shaped;
+  s.start = change.summed ? VectorX(spanned.coordinates.rowwise().sum()) : VectorX(spanned.coordinates.col(0));
+  s.lambda = s.start.norm();
+  s.one_sided = s.shaped ? amplitude_from_nothing(*e.effect) : one_sided(e);
+  return {std::move(s), std::move(spanned.coordinates)};
 }
 
 std::vector<PlaceWithoutLaw> places_without_law(const std::vector<Signature>& all, const subject::Subject& subject,
@@ -132,6 +143,8 @@ SignaturesAtPlaces::SignaturesAtPlaces(const Observations& o, const std::vector<
     if (MatrixX columns = changes_->by_whatever(p, leg); columns.cols() > 0)
       whatever_.emplace(spot_of(p, leg), std::move(columns));
   });
+  for (auto& [sensor, shapes] : compare::channel_shapes(o.comparison().study))
+    whatever_.emplace(Spot("sensors." + sensor, 0), std::move(shapes));
   weigh(o, threads, [&](std::size_t i) {
     Place& p = places_[i];
     auto change = outcome_of([&] { return changes_->by(p.effect); });
@@ -146,6 +159,16 @@ SignaturesAtPlaces::SignaturesAtPlaces(const Observations& o, const std::vector<
                                  o.subject().name(), places_.size(), name_of(failed->effect), failed->why));
 }
 
+std::optional<Change> SignaturesAtPlaces::change_again(const Place& p, const MatrixX& basis,
+                                                       const statistics::Whitening& before,
+                                                       const std::vector<Eigen::Index>& aside) {
+  if (!p.why.empty()) return std::nullopt;
+  Change out{MatrixX::Zero(before.rows(), p.aside.cols()), is_shaped(p.effect), p.summed};
+  if (basis.cols() > 0) out.columns = before.undo(basis) * p.coordinates;
+  out.columns(aside, Eigen::all) = p.aside;
+  return out;
+}
+
 void SignaturesAtPlaces::weigh_for(const Observations& o, int threads) {
   std::vector<MatrixX> bases(places_.size());
   std::size_t next = 0;
@@ -154,15 +177,29 @@ void SignaturesAtPlaces::weigh_for(const Observations& o, int threads) {
   const std::shared_ptr<const statistics::Whitening> before = std::move(whitening_);
   const std::vector<Eigen::Index> aside = std::move(aside_);
   left_out_.resize(nowhere_);
-  weigh(o, threads, [&](std::size_t i) -> std::optional<Change> {
-    const Place& p = places_[i];
-    if (!p.why.empty()) return std::nullopt;
-    Change change{MatrixX::Zero(before->rows(), p.aside.cols()), is_shaped(p.effect), p.summed};
-    if (bases[i].cols() > 0) change.columns = before->undo(bases[i]) * p.coordinates;
-    change.columns(aside, Eigen::all) = p.aside;
+  weigh(o, threads, [&](std::size_t i) {
+    auto change = change_again(places_[i], bases[i], *before, aside);
     bases[i].resize(0, 0);
     return change;
   });
+}
+
+bool SignaturesAtPlaces::are_weighed_for(const Observations& o) const {
+  return o.uncertainty().whitening() == whitening_;
+}
+
+Signature SignaturesAtPlaces::law_seen_by(const std::shared_ptr<const Observations>& o, std::size_t k) const {
+  const Signature& s = known_.laws[k];
+  const auto change = change_again(places_[place_of_law_[k]], s.basis, *whitening_, aside_);
+  Signature out = weighed(s.effect, *change, *o->uncertainty().whitening()).first;
+  if (s.any_curve) out.any_curve = std::make_shared<const AnyCurve>(o, changes_, s.effect);
+  return out;
+}
+
+MatrixX SignaturesAtPlaces::whatever_seen_by(const Observations& o, const subject::Place& place,
+                                             std::optional<int> leg) const {
+  const auto columns = whatever_.find(spot_of(place, leg));
+  return columns == whatever_.end() ? MatrixX() : as_seen(o, columns->second);
 }
 
 std::vector<Signature> signatures(const Observations& o, const std::vector<effects::Effect>& effects, int threads,
@@ -185,24 +222,19 @@ void SignaturesAtPlaces::weigh(const Observations& o, int threads, const ChangeO
   parallel::for_each_case(places_.size(), 1, threads, [&](std::size_t i) {
     Place& p = places_[i];
     Signature& s = all[i];
-    s.effect = p.effect;
     const std::optional<Change> change = change_of(i);
     if (!change) return;
-    const MatrixX white = (*whitening_)(change->columns);
-    Spanned spanned = change->shaped ? unit_columns(white) : orthonormal(white);
-    s.basis = std::move(spanned.basis);
-    s.shaped = change->shaped;
-    s.start = change->summed ? VectorX(spanned.coordinates.rowwise().sum()) : VectorX(spanned.coordinates.col(0));
-    s.lambda = s.start.norm();
-    s.one_sided = s.shaped ? amplitude_from_nothing(*p.effect.effect) : one_sided(p.effect);
+    std::tie(s, p.coordinates) = weighed(p.effect, *change, *whitening_);
     if (const auto& at = p.effect.effect->place) s.whatever_the_law = any.at(*at, p.effect.leg);
     s.any_curve = any.curve_at(p.effect);
-    p.coordinates = std::move(spanned.coordinates);
     p.aside = change->columns(aside_, Eigen::all);
     p.summed = change->summed;
   });
+  place_of_law_.clear();
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (all[i].basis.cols() == 0 && !places_[i].effect.effect->place)
+    if (all[i].basis.cols() > 0)
+      place_of_law_.push_back(i);
+    else if (!places_[i].effect.effect->place)
       left_out_.push_back(
           {name_of(places_[i].effect), places_[i].why.empty() ? "changes nothing that was measured" : places_[i].why});
   std::erase_if(all, [](const Signature& s) { return s.basis.cols() == 0; });
@@ -328,29 +360,10 @@ bool lets_go(const effects::Effect& e) {
                  std::holds_alternative<OneSidedLaw>(*law));
 }
 
-bool turns_as_it_grows(const effects::Effect& e) {
-  if (!e.place || e.parameters.size() != 1) return false;
-  const effects::EffectParameter& p = e.parameters.front();
-  return p.log && p.vanishes && p.low < *p.vanishes && *p.vanishes < p.high && !e.place->one_stiffness;
-}
-
 std::vector<char> those_that_let_go(const std::vector<Signature>& all) {
   std::vector<char> out;
   for (const Signature& s : all) out.push_back(lets_go(*s.effect.effect));
   return out;
-}
-
-bool at_one_place(const effects::PlacedEffect& a, const effects::PlacedEffect& b) {
-  const std::optional<subject::Place>&at = a.effect->place, &other = b.effect->place;
-  return at && other && a.leg == b.leg && a.effect->scope == b.effect->scope &&
-         subject::id_of(*at) == subject::id_of(*other);
-}
-
-double single_p_value(const Signature& s, double gain) { return tail(s.amplitudes(), s.one_sided, gain); }
-
-double gain_at_p_value(const Signature& s, double p) {
-  const double own = s.one_sided ? 2 * p : p;
-  return own < 1 ? statistics::chi_squared_at_tail(s.amplitudes(), own) : 0;
 }
 
 std::vector<double> summed(const std::vector<double>& x, const std::vector<std::size_t>& classes) {

@@ -60,8 +60,15 @@ class SignaturesAtPlaces {
   SignaturesAtPlaces(const Observations&, const std::vector<effects::Effect>&, int threads);
 
   /// Weighs the same changes as these observations do. They must be those of before but for the readings that are set
-  /// aside, so that nothing is predicted anew.
+  /// aside and what counts as right (Observations::granted()), so that nothing is predicted anew.
   void weigh_for(const Observations&, int threads);
+
+  /// Whether these observations weigh as those of the last weighing do.
+  bool are_weighed_for(const Observations&) const;
+  /// Law k of known(), and what may happen at a place whatever the law (empty where there is nothing), as other
+  /// observations weigh them, which must be as in weigh_for().
+  Signature law_seen_by(const std::shared_ptr<const Observations>&, std::size_t k) const;
+  MatrixX whatever_seen_by(const Observations&, const subject::Place&, std::optional<int> leg) const;
 
   const std::vector<Signature>& all() const& { return known_.laws; }
   std::vector<Signature> all() && { return std::move(known_.laws); }
@@ -80,11 +87,15 @@ class SignaturesAtPlaces {
   };
   template <class ChangeOf>
   void weigh(const Observations&, int threads, const ChangeOf&);
+  /// `before`, `aside`: of the weighing that gave this basis.
+  static std::optional<Change> change_again(const Place&, const MatrixX& basis, const statistics::Whitening& before,
+                                            const std::vector<Eigen::Index>& aside);
 
   std::vector<Place> places_;
   std::shared_ptr<const Changes> changes_;
-  std::map<Spot, MatrixX> whatever_;  ///< Changes::by_whatever()
+  std::map<Spot, MatrixX> whatever_;  ///< Changes::by_whatever(), and channel_shapes()
   Explanations known_;                ///< laws in the order of the places
+  std::vector<std::size_t> place_of_law_;
   std::vector<LeftOut> left_out_;
   std::size_t nowhere_ = 0;  ///< how many of left_out_ have no place in the subject
   std::shared_ptr<const statistics::Whitening> whitening_;
@@ -136,19 +147,6 @@ std::vector<std::size_t> classes_of(const std::vector<Signature>&, const MatrixX
 /// touches is pressed together.
 bool lets_go(const effects::Effect&);
 std::vector<char> those_that_let_go(const std::vector<Signature>&);
-
-/// A factor on several stiffnesses at once, as those of a beam: where it is large it moves the readings in another
-/// direction than a little of it. (A single stiffness keeps its direction: K changes by a rank-one term.)
-bool turns_as_it_grows(const effects::Effect&);
-
-/// Of two laws at places.
-bool at_one_place(const effects::PlacedEffect&, const effects::PlacedEffect&);
-
-/// p-value of a gain in χ² as if this were the only effect tested.
-double single_p_value(const Signature&, double gain);
-
-/// The gain with this p-value; 0 where every gain has a smaller p-value.
-double gain_at_p_value(const Signature&, double p);
 
 /// By signature: the sum over its class.
 std::vector<double> summed(const std::vector<double>&, const std::vector<std::size_t>& classes);

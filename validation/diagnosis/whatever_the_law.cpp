@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "msa/base/index.h"
-#include "validation/compare/channel_shapes.h"
 #include "validation/statistics/columns.h"
 
 namespace deflect::diagnosis {
@@ -33,9 +32,10 @@ AnyCurve::AnyCurve(std::shared_ptr<const Observations> o, std::shared_ptr<const 
                    const effects::PlacedEffect& at)
     : observations_(std::move(o)), changes_(std::move(changes)), at_(at) {}
 
-MatrixX AnyCurve::columns() const {
-  const MatrixX raw = changes_->by_any_curve(at_);
-  return that_are_seen(*observations_, raw, observations_->uncertainty().whitened(raw));
+MatrixX AnyCurve::columns() const { return as_seen(*observations_, changes_->by_any_curve(at_)); }
+
+MatrixX as_seen(const Observations& o, const MatrixX& columns) {
+  return that_are_seen(o, columns, o.uncertainty().whitened(columns));
 }
 
 Spot spot_of(const subject::Place& p, std::optional<int> leg) {
@@ -45,13 +45,8 @@ Spot spot_of(const subject::Place& p, std::optional<int> leg) {
 }
 
 WhateverTheLaw::WhateverTheLaw(const Observations& o, std::shared_ptr<const Changes> changes,
-                               const std::map<Spot, MatrixX>& of_parts)
-    : observations_(std::make_shared<const Observations>(o)), changes_(std::move(changes)), all_(whitened(of_parts)) {
-  std::map<Spot, MatrixX> of_sensors;
-  for (auto& [sensor, shapes] : compare::channel_shapes(o.comparison().study))
-    of_sensors.emplace(Spot("sensors." + sensor, 0), std::move(shapes));
-  all_.merge(whitened(of_sensors));
-}
+                               const std::map<Spot, MatrixX>& columns)
+    : observations_(std::make_shared<const Observations>(o)), changes_(std::move(changes)), all_(whitened(columns)) {}
 
 std::shared_ptr<const MatrixX> WhateverTheLaw::at(const subject::Place& place, std::optional<int> leg) const {
   const auto found = all_.find(spot_of(place, leg));

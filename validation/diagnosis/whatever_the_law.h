@@ -25,14 +25,17 @@ class AnyCurve {
   effects::PlacedEffect at_;
 };
 
+/// Of columns over the measured numbers, those that these observations see, whitened, of unit length.
+MatrixX as_seen(const Observations&, const MatrixX& columns);
+
 /// A place in all legs (0) or in one of them, by a name of its own; all that can be wrong with a sensor is at one.
 using Spot = std::pair<std::string, int>;
 Spot spot_of(const subject::Place&, std::optional<int> leg);
 
 class WhateverTheLaw {
  public:
-  /// `of_parts`: Changes::by_whatever().
-  WhateverTheLaw(const Observations&, std::shared_ptr<const Changes>, const std::map<Spot, MatrixX>& of_parts);
+  /// `columns`: of members and loads those of Changes::by_whatever(), of sensors channel_shapes().
+  WhateverTheLaw(const Observations&, std::shared_ptr<const Changes>, const std::map<Spot, MatrixX>& columns);
 
   /// At sensors, members, and loads of frames; null elsewhere, and at groups.
   std::shared_ptr<const MatrixX> at(const subject::Place&, std::optional<int> leg) const;
