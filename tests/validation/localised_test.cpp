@@ -39,7 +39,7 @@ class Places {
 
   /// At the place of the last law.
   Places& whatever(const MatrixX& columns) {
-    known_.laws.back().whatever_the_law = std::make_shared<const MatrixX>(columns);
+    known_.laws.back().whatever_the_law = [columns] { return columns; };
     return *this;
   }
 
@@ -48,7 +48,7 @@ class Places {
     subject::Place place;
     place.part = part;
     place.path = "leg." + part;
-    known_.without_law.push_back({place, leg, std::make_shared<const MatrixX>(columns)});
+    known_.without_law.push_back({place, leg, [columns] { return columns; }});
     return *this;
   }
 

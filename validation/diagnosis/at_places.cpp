@@ -55,19 +55,18 @@ std::vector<LawsAtPlace> laws_by_place(const Explanations& all) {
   return out;
 }
 
-const AnyCurve* curve_of(const LawsAtPlace& p) { return p.without ? nullptr : p.laws.front()->any_curve.get(); }
+bool has_curve(const LawsAtPlace& p) { return !p.without && p.laws.front()->any_curve; }
 
 /// By all laws at a place, or by any curve there as well.
 AtPlace explained_by(const Weighed& all, const LawsAtPlace& place, const VectorX& residual, const MatrixX& fitted,
                      bool any_curve) {
   AtPlace out;
   out.without_law = place.without;
-  out.prior = (curve_of(place) ? half : 1) * place.prior;
+  out.prior = (has_curve(place) ? half : 1) * place.prior;
   double most = -1;
   std::vector<MatrixX> columns;
-  std::shared_ptr<const AnyCurve> curve;
+  Columns whatever = place.without ? all.whatever(*place.without) : nullptr, curve = nullptr;
   const auto add = [&](const MatrixX& basis) {
-    if (basis.cols() == 0) return;
     const MatrixX beside = basis - fitted * (fitted.transpose() * basis);
     for (const auto column : beside.colwise())
       if (column.norm() > left_of_a_column) columns.emplace_back(column);
@@ -75,14 +74,14 @@ AtPlace explained_by(const Weighed& all, const LawsAtPlace& place, const VectorX
   for (const Signature* s : place.laws) {
     const Signature law = all.law(*s);
     add(law.basis);
-    if (s == place.laws.front()) curve = law.any_curve;
+    if (s == place.laws.front()) whatever = law.whatever_the_law, curve = law.any_curve;
     const double gain = most_gain(law, residual, fitted);
     if (gain <= most) continue;
     most = gain, out.best = s;
     out.other_way = law.one_sided && law.start_along(residual) > 0;
   }
-  add(place.without ? all.whatever(*place.without) : all.whatever(*place.laws.front()));
-  if (any_curve) add(curve->columns());
+  if (whatever) add(whatever());
+  if (any_curve) add(curve());
   if (columns.empty()) return out;
   const MatrixX together = statistics::side_by_side(columns, residual.size());
   columns.clear();
@@ -102,7 +101,7 @@ std::vector<std::size_t> worth_any_curve(const std::vector<LawsAtPlace>& places,
   };
   std::vector<std::size_t> out, others;
   for (std::size_t i = 0; i < places.size(); ++i)
-    if (curve_of(places[i])) (has_effect(places[i]) ? out : others).push_back(i);
+    if (has_curve(places[i])) (has_effect(places[i]) ? out : others).push_back(i);
   std::stable_sort(others.begin(), others.end(),
                    [&](std::size_t a, std::size_t b) { return by_laws[a].gain > by_laws[b].gain; });
   others.resize(std::min(looked_into, others.size()));
@@ -139,14 +138,8 @@ Signature Weighed::law(const Signature& s) const {
   return signatures_ ? signatures_->law_seen_by(observations_, as_size(&s - all_->laws.data())) : s;
 }
 
-MatrixX Weighed::whatever(const Signature& s) const {
-  if (!s.whatever_the_law) return {};
-  return signatures_ ? signatures_->whatever_seen_by(*observations_, *s.effect.effect->place, s.effect.leg)
-                     : *s.whatever_the_law;
-}
-
-MatrixX Weighed::whatever(const PlaceWithoutLaw& p) const {
-  return signatures_ ? signatures_->whatever_seen_by(*observations_, p.place, p.leg) : *p.whatever_the_law;
+Columns Weighed::whatever(const PlaceWithoutLaw& p) const {
+  return signatures_ ? signatures_->seen_by(observations_, p) : p.whatever_the_law;
 }
 
 std::vector<AtPlace> at_places(const Weighed& all, const Hypothesis& effects, const Fit& fit, int threads) {

@@ -29,9 +29,7 @@ class Weighed {
   const Explanations& all() const { return *all_; }
   /// One of the laws of all(). Computed at each call, as they all are: kept they would take as much memory again.
   Signature law(const Signature&) const;
-  /// Empty where there is nothing.
-  MatrixX whatever(const Signature&) const;
-  MatrixX whatever(const PlaceWithoutLaw&) const;
+  Columns whatever(const PlaceWithoutLaw&) const;
 
  private:
   const Explanations* all_;

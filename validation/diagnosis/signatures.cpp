@@ -95,8 +95,8 @@ void for_each_place(const subject::Subject& subject, const Does& does) {
 
 /// The signature of a change, and the coordinates in its basis.
 std::pair<Signature, MatrixX> weighed(const effects::PlacedEffect& e, const Change& change,
-                                      const statistics::Whitening& whitening) {
-  const MatrixX white = whitening(change.columns);
+                                      const std::shared_ptr<const Observations>& o, const WhateverTheLaw& any) {
+  const MatrixX white = (*o->uncertainty().whitening())(change.columns);
   Spanned spanned = change.shaped ? unit_columns(white) : orthonormal(white);
   Signature s;
   s.effect = e;
@@ -105,18 +105,23 @@ std::pair<Signature, MatrixX> weighed(const effects::PlacedEffect& e, const Chan
   s.start = change.summed ? VectorX(spanned.coordinates.rowwise().sum()) : VectorX(spanned.coordinates.col(0));
   s.lambda = s.start.norm();
   s.one_sided = s.shaped ? amplitude_from_nothing(*e.effect) : one_sided(e);
+  if (const auto& place = e.effect->place) s.whatever_the_law = any.at(*place, e.leg, o);
+  s.any_curve = any.curve_at(e, o);
   return {std::move(s), std::move(spanned.coordinates)};
 }
 
-std::vector<PlaceWithoutLaw> places_without_law(const std::vector<Signature>& all, const subject::Subject& subject,
+std::vector<PlaceWithoutLaw> places_without_law(const std::vector<Signature>& all,
+                                                const std::shared_ptr<const Observations>& o,
                                                 const WhateverTheLaw& any) {
   std::set<Spot> known;
   for (const Signature& s : all)
     if (const auto& place = s.effect.effect->place) known.insert(spot_of(*place, s.effect.leg));
   std::vector<PlaceWithoutLaw> out;
-  for_each_place(subject, [&](const subject::Place& p, std::optional<int> leg) {
-    const auto whatever = any.at(p, leg);
-    if (whatever && whatever->cols() > 0 && known.insert(spot_of(p, leg)).second) out.push_back({p, leg, whatever});
+  for_each_place(o->subject(), [&](const subject::Place& p, std::optional<int> leg) {
+    const Columns whatever = any.at(p, leg, o);
+    if (!whatever || known.contains(spot_of(p, leg)) || whatever().cols() == 0) return;
+    known.insert(spot_of(p, leg));
+    out.push_back({p, leg, whatever});
   });
   return out;
 }
@@ -138,16 +143,17 @@ SignaturesAtPlaces::SignaturesAtPlaces(const Observations& o, const std::vector<
   }
   nowhere_ = left_out_.size();
   for (const effects::PlacedEffect& e : placed) places_.push_back({e});
-  changes_ = std::make_shared<const Changes>(o, placed, threads);
+  const auto changes = std::make_shared<const Changes>(o, placed, threads);
+  std::map<Spot, MatrixX> columns;
   for_each_place(o.subject(), [&](const subject::Place& p, std::optional<int> leg) {
-    if (MatrixX columns = changes_->by_whatever(p, leg); columns.cols() > 0)
-      whatever_.emplace(spot_of(p, leg), std::move(columns));
+    if (MatrixX own = changes->by_whatever(p, leg); own.cols() > 0) columns.emplace(spot_of(p, leg), std::move(own));
   });
   for (auto& [sensor, shapes] : compare::channel_shapes(o.comparison().study))
-    whatever_.emplace(Spot("sensors." + sensor, 0), std::move(shapes));
+    if (shapes.cols() > 0) columns.emplace(Spot("sensors." + sensor, 0), std::move(shapes));
+  whatever_.emplace(changes, std::move(columns));
   weigh(o, threads, [&](std::size_t i) {
     Place& p = places_[i];
-    auto change = outcome_of([&] { return changes_->by(p.effect); });
+    auto change = outcome_of([&] { return changes->by(p.effect); });
     // The subject cannot stand with it, or it wants what the file does not have: a sequence.
     if (!change) p.why = change.why;
     if (change && !change->columns.allFinite()) p.why = "the prediction with it is no number";
@@ -191,15 +197,11 @@ bool SignaturesAtPlaces::are_weighed_for(const Observations& o) const {
 Signature SignaturesAtPlaces::law_seen_by(const std::shared_ptr<const Observations>& o, std::size_t k) const {
   const Signature& s = known_.laws[k];
   const auto change = change_again(places_[place_of_law_[k]], s.basis, *whitening_, aside_);
-  Signature out = weighed(s.effect, *change, *o->uncertainty().whitening()).first;
-  if (s.any_curve) out.any_curve = std::make_shared<const AnyCurve>(o, changes_, s.effect);
-  return out;
+  return weighed(s.effect, *change, o, *whatever_).first;
 }
 
-MatrixX SignaturesAtPlaces::whatever_seen_by(const Observations& o, const subject::Place& place,
-                                             std::optional<int> leg) const {
-  const auto columns = whatever_.find(spot_of(place, leg));
-  return columns == whatever_.end() ? MatrixX() : as_seen(o, columns->second);
+Columns SignaturesAtPlaces::seen_by(const std::shared_ptr<const Observations>& o, const PlaceWithoutLaw& p) const {
+  return whatever_->at(p.place, p.leg, o);
 }
 
 std::vector<Signature> signatures(const Observations& o, const std::vector<effects::Effect>& effects, int threads,
@@ -216,7 +218,7 @@ void SignaturesAtPlaces::weigh(const Observations& o, int threads, const ChangeO
   const std::vector<measurement::MeasuredValue>& values = o.comparison().study.values;
   for (std::size_t k = 0; k < values.size(); ++k)
     if (o.aside()[values[k].reading]) aside_.push_back(as_index(k));
-  const WhateverTheLaw any(o, changes_, whatever_);
+  const auto observations = std::make_shared<const Observations>(o);
   std::vector<Signature>& all = known_.laws;
   all.assign(places_.size(), {});
   parallel::for_each_case(places_.size(), 1, threads, [&](std::size_t i) {
@@ -224,9 +226,7 @@ void SignaturesAtPlaces::weigh(const Observations& o, int threads, const ChangeO
     Signature& s = all[i];
     const std::optional<Change> change = change_of(i);
     if (!change) return;
-    std::tie(s, p.coordinates) = weighed(p.effect, *change, *whitening_);
-    if (const auto& at = p.effect.effect->place) s.whatever_the_law = any.at(*at, p.effect.leg);
-    s.any_curve = any.curve_at(p.effect);
+    std::tie(s, p.coordinates) = weighed(p.effect, *change, observations, *whatever_);
     p.aside = change->columns(aside_, Eigen::all);
     p.summed = change->summed;
   });
@@ -238,7 +238,7 @@ void SignaturesAtPlaces::weigh(const Observations& o, int threads, const ChangeO
       left_out_.push_back(
           {name_of(places_[i].effect), places_[i].why.empty() ? "changes nothing that was measured" : places_[i].why});
   std::erase_if(all, [](const Signature& s) { return s.basis.cols() == 0; });
-  known_.without_law = places_without_law(all, o.subject(), any);
+  known_.without_law = places_without_law(all, observations, *whatever_);
 }
 
 std::vector<double> weights_of(const std::vector<Signature>& all) {

@@ -22,22 +22,18 @@ struct Signature {
   VectorX start;           ///< change of the whitened residual at the start values is basis · start
   double lambda = 0;       ///< its norm
   bool one_sided = false;  ///< physics fixes the amplitude's sign (where shaped, that of the columns)
-  /// What else may happen at its place, whether or not a law describes it: unit columns. Of sensors (channel_shapes.h),
-  /// members, and loads of frames (Changes::by_whatever()); null elsewhere.
-  std::shared_ptr<const MatrixX> whatever_the_law = nullptr;
-  std::shared_ptr<const AnyCurve> any_curve = nullptr;  ///< at its place in a machine, where statics tells the forces
+  Columns whatever_the_law = nullptr, any_curve = nullptr;  ///< at its place (WhateverTheLaw)
 
   int amplitudes() const { return shaped ? 1 : static_cast<int>(basis.cols()); }
   /// Inner product of the change at the start values with a residual.
   double start_along(const VectorX& residual) const { return start.dot(basis.transpose() * residual); }
 };
 
-/// A place, of every leg or of one, at which none of the effects changes what was measured, and what may happen there:
-/// unit columns.
+/// A place, of every leg or of one, at which none of the effects changes what was measured, and what may happen there.
 struct PlaceWithoutLaw {
   subject::Place place;
   std::optional<int> leg;
-  std::shared_ptr<const MatrixX> whatever_the_law;
+  Columns whatever_the_law;
 };
 
 /// What may explain a residual.
@@ -65,10 +61,10 @@ class SignaturesAtPlaces {
 
   /// Whether these observations weigh as those of the last weighing do.
   bool are_weighed_for(const Observations&) const;
-  /// Law k of known(), and what may happen at a place whatever the law (empty where there is nothing), as other
-  /// observations weigh them, which must be as in weigh_for().
+  /// Law k of known(), and what may happen at a place without one, as other observations weigh them, which must be as
+  /// in weigh_for().
   Signature law_seen_by(const std::shared_ptr<const Observations>&, std::size_t k) const;
-  MatrixX whatever_seen_by(const Observations&, const subject::Place&, std::optional<int> leg) const;
+  Columns seen_by(const std::shared_ptr<const Observations>&, const PlaceWithoutLaw&) const;
 
   const std::vector<Signature>& all() const& { return known_.laws; }
   std::vector<Signature> all() && { return std::move(known_.laws); }
@@ -92,9 +88,8 @@ class SignaturesAtPlaces {
                                             const std::vector<Eigen::Index>& aside);
 
   std::vector<Place> places_;
-  std::shared_ptr<const Changes> changes_;
-  std::map<Spot, MatrixX> whatever_;  ///< Changes::by_whatever(), and channel_shapes()
-  Explanations known_;                ///< laws in the order of the places
+  std::optional<WhateverTheLaw> whatever_;
+  Explanations known_;  ///< laws in the order of the places
   std::vector<std::size_t> place_of_law_;
   std::vector<LeftOut> left_out_;
   std::size_t nowhere_ = 0;  ///< how many of left_out_ have no place in the subject

@@ -1,7 +1,7 @@
-// What may happen at a place, whether or not a law describes it: columns over the measured numbers, whitened, of unit
-// length, without those that tolerances hide.
+// What may happen at a place, whether or not a law describes it.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -12,21 +12,9 @@
 
 namespace deflect::diagnosis {
 
-/// Any curve of deflection over force at a place of a machine (Changes::by_any_curve()).
-class AnyCurve {
- public:
-  AnyCurve(std::shared_ptr<const Observations>, std::shared_ptr<const Changes>, const effects::PlacedEffect& at);
-  /// Computed at each call: kept for all places they would take more memory than all else.
-  MatrixX columns() const;
-
- private:
-  std::shared_ptr<const Observations> observations_;
-  std::shared_ptr<const Changes> changes_;
-  effects::PlacedEffect at_;
-};
-
-/// Of columns over the measured numbers, those that these observations see, whitened, of unit length.
-MatrixX as_seen(const Observations&, const MatrixX& columns);
+/// Columns over the measured numbers, whitened, of unit length, without those that tolerances hide. Computed at each
+/// call: kept for all places they would take more memory than all else.
+using Columns = std::function<MatrixX()>;
 
 /// A place in all legs (0) or in one of them, by a name of its own; all that can be wrong with a sensor is at one.
 using Spot = std::pair<std::string, int>;
@@ -35,20 +23,17 @@ Spot spot_of(const subject::Place&, std::optional<int> leg);
 class WhateverTheLaw {
  public:
   /// `columns`: of members and loads those of Changes::by_whatever(), of sensors channel_shapes().
-  WhateverTheLaw(const Observations&, std::shared_ptr<const Changes>, const std::map<Spot, MatrixX>& columns);
+  WhateverTheLaw(std::shared_ptr<const Changes>, std::map<Spot, MatrixX> columns);
 
-  /// At sensors, members, and loads of frames; null elsewhere, and at groups.
-  std::shared_ptr<const MatrixX> at(const subject::Place&, std::optional<int> leg) const;
-  /// Where an effect in a machine acts; null where statics does not tell the forces.
-  std::shared_ptr<const AnyCurve> curve_at(const effects::PlacedEffect&) const;
+  /// At sensors, members, and loads of frames, as these observations weigh it; null elsewhere, and at groups.
+  Columns at(const subject::Place&, std::optional<int> leg, std::shared_ptr<const Observations>) const;
+  /// Any curve of deflection over force where an effect in a machine acts (Changes::by_any_curve()); null where statics
+  /// does not tell the forces.
+  Columns curve_at(const effects::PlacedEffect&, std::shared_ptr<const Observations>) const;
 
  private:
-  using Shapes = std::map<Spot, std::shared_ptr<const MatrixX>>;
-  Shapes whitened(const std::map<Spot, MatrixX>&) const;
-
-  std::shared_ptr<const Observations> observations_;
   std::shared_ptr<const Changes> changes_;
-  Shapes all_;
+  std::shared_ptr<const std::map<Spot, MatrixX>> columns_;
 };
 
 }  // namespace deflect::diagnosis
