@@ -236,10 +236,10 @@ TEST(Diagnose, ProbabilityOfTheUnknownIsThatOfBayes) {
   const Diagnosis d = diagnose(ideal(), data, one);
   ASSERT_EQ(d.missing.size(), 1u);
   const Observations o(ideal(), data, {}), seen = o.granted(subject_with(o, d.missing, d.fit.values));
-  const LeftOver left = left_over(seen.whitened_patterns(), SignaturesAtPlaces(o, one, 1).known(), d.missing,
-                                  fit_of_all(seen, d.missing, d.fit.values), 1);
-  const double odds = std::exp(left.log_evidence) * 0.1 / 0.9;
-  EXPECT_NEAR(d.probability_unknown / (1 - d.probability_unknown), odds, 1e-3 * odds);
+  const SignaturesAtPlaces all(o, one, 1);
+  const LeftOver left =
+      left_over(seen.whitened_patterns(), {all, seen}, d.missing, fit_of_all(seen, d.missing, d.fit.values), 1);
+  EXPECT_NEAR(9 * d.probability_unknown / (1 - d.probability_unknown) / std::exp(left.log_evidence), 1, 1e-3);
   EXPECT_NEAR(total(d), 1, 1e-12);
 }
 
