@@ -27,7 +27,7 @@ class Weighed {
   Weighed(const SignaturesAtPlaces&, const Observations&);
 
   const Explanations& all() const { return *all_; }
-  /// One of the laws of all(). Computed at each call, as they all are: kept they would take as much memory again.
+  /// Of one of the laws of all(). Computed at each call: kept for all laws they would take as much memory again.
   Signature law(const Signature&) const;
   Columns whatever(const PlaceWithoutLaw&) const;
 

@@ -34,7 +34,7 @@ std::string pattern_left(const Observations&, const subject::Subject&);
 /// better of the two leaves it.
 std::optional<Selection> at_one_place(const Weighed&, const Candidates&, const Selection&, double more);
 
-/// ln of the odds by which it must be likelier where effects alone leave nothing unknown.
+/// ln of the odds by which a law at one place must be likelier, where effects alone leave nothing unknown.
 inline const double clearly_one_place = called_for - std::log(Candidates::prior_unknown);
 
 /// Whether that law is clearly likelier, whatever the places of the effects, and leaves no more than noise does: then
