@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
@@ -60,11 +61,11 @@ TEST(PatternLeft, NoiseLargerThanToldIsSaid) {
   const Mechanism m = test::device("haptic-6psu-ideal-joints");
   measurement::Measurements data = prediction::simulate(m, prediction::campaign("random", m, 50, 15), {});
   const std::string none = "no pattern that was looked for";
-  EXPECT_EQ(pattern_left(Observations(m, data, {}), m), none);
+  EXPECT_EQ(pattern_left({Observations(m, data, {}), {}, {}, {}, {}}, {}, false), none);
   for (measurement::Reading& r : data.readings)
     for (std::optional<double>* sigma : {&r.sigma_u, &r.sigma_th})
       if (*sigma) **sigma /= 1.5;
-  const std::string left = pattern_left(Observations(m, data, {}), m);
+  const std::string left = pattern_left({Observations(m, data, {}), {}, {}, {}, {}}, {}, false);
   ASSERT_TRUE(left.starts_with(none + "; noise ")) << left;
   EXPECT_NEAR(std::stod(left.substr(left.find("noise ") + 6)), 1.5, 0.15) << left;
 }
@@ -92,12 +93,12 @@ TEST(AtPlaces, AnyCurveIsMoreThanTheLawsOfAPlace) {
   ASSERT_EQ(laws.size(), 2u);
   const MatrixX span = statistics::orthonormal(statistics::side_by_side(laws, null.residual.size()));
   const std::vector<AtPlace> places = at_places(all, {}, null, 1);
-  const AtPlace& most = *std::max_element(places.begin(), places.end(),
-                                          [](const AtPlace& a, const AtPlace& b) { return a.gain < b.gain; });
+  const AtPlace& most = *std::max_element(
+      places.begin(), places.end(), [](const AtPlace& a, const AtPlace& b) { return a.most().gain < b.most().gain; });
   const auto numbers = static_cast<double>(o.numbers());
   ASSERT_TRUE(most.best);
   EXPECT_TRUE(most.best->effect.effect->name.ends_with("@joint_4.tx")) << most.best->effect.effect->name;
-  EXPECT_LT(null.chi2 - most.gain, numbers + 3 * std::sqrt(2 * numbers));
+  EXPECT_LT(null.chi2 - most.most().gain, numbers + 3 * std::sqrt(2 * numbers));
   EXPECT_GT(null.chi2 - (span.transpose() * null.residual).squaredNorm(), numbers + 10 * std::sqrt(2 * numbers));
 }
 
@@ -128,6 +129,71 @@ TEST(AtOnePlace, ASectionThatIsNotAsDescribedIsAtItsMember) {
   for (const PlacedEffect& e : d.missing) EXPECT_EQ(e.effect->name, "factor@fore_link");
 }
 
+std::vector<Effect> all_but(const std::string& left_out, const Mechanism& m) {
+  std::vector<Effect> known = test::all_effects();
+  for (Effect& e : place_effects(subject::Subject(m), test::all_effects()))
+    if (left_out.empty() || !e.name.starts_with(left_out)) known.push_back(std::move(e));
+  return known;
+}
+
+measurement::Measurements measured_on(const Mechanism& m) {
+  prediction::SimulationOptions noise;
+  noise.sigma_u = 1e-6;
+  noise.seed = 3;
+  return prediction::simulate(m, prediction::campaign("random", m, 50, 3), noise);
+}
+
+// A measured curve with two knees at the elbow of a scara. What the quill's screw and its wrist yield sideways moves
+// the tool as the elbow's turn does, since the fore link between them has one length: the three places cannot be told
+// apart, and nothing else explains as much. A sum of powers of the force leaves a tenth of it, a broken line hardly
+// any.
+TEST(AtOnePlace, ACurveWithKneesIsWhereItActsOrDoesTheSame) {
+  const Mechanism m = test::device("scara");
+  const measurement::Measurements data =
+      measured_on(test::with(m, "leg.elbow.rz",
+                             "{law: table, points: [[0 Nm, 0 mrad], [2 Nm, 0.05 mrad], [3 Nm, 0.3 mrad], [6 Nm, 0.5 "
+                             "mrad], [20 Nm, 1 mrad]]}"));
+  const Observations o(m, data, {});
+  const std::vector<Effect> known = all_but("", m);
+  const SignaturesAtPlaces all(o, known, 2);
+  const Fit null = fit_of_all(o, {}, VectorX(0));
+  const std::vector<Localised> found =
+      localised(at_places(all.known(), {}, null, 2), null.chi2, static_cast<double>(o.numbers()));
+  ASSERT_EQ(found.size(), 3u);
+  std::set<std::string> places;
+  for (const Localised& l : found) {
+    places.insert(subject::id_of(l.place));
+    EXPECT_NEAR(l.probability, 1.0 / 3, 0.02) << l.what;
+    EXPECT_GT(l.share, 0.98) << l.what;
+  }
+  EXPECT_EQ(places, (std::set<std::string>{"elbow.rz", "screw.ty", "wrist.ty"}));
+  EXPECT_EQ(pattern_left({o, {}, null, {}, {}}, found, false),
+            "an unknown law at one place takes 99 % of it: screw ty or wrist ty or elbow rz");
+}
+
+// Play of a gear that is not among the candidates. A spring that stiffens and friction that grows with the load add up
+// to nearly the same; they are not named without saying that one unknown law there explains more.
+TEST(AtOnePlace, LawsOfThePlaceThatImitateAnotherAreNotAllThereIs) {
+  const std::string folder = test::source_dir() + "/validation/measurements/cycloid/";
+  const Mechanism m = read_mechanism(folder + "actuator.yaml");
+  const std::vector<Effect> every = all_but("", m);
+  const auto play =
+      std::find_if(every.begin(), every.end(), [](const Effect& e) { return e.name == "clearance@drive.rz"; });
+  ASSERT_NE(play, every.end());
+  const subject::Subject hidden = with_effect(subject::Subject(m), {{&*play, {}}, test::values({5e-4})});
+  prediction::SimulationOptions noise;
+  noise.sigma_th = 6e-5;
+  const measurement::Measurements data = prediction::simulate(
+      *hidden.machine(), measurement::read_measurements(folder + "baseline_play_initial.csv"), noise);
+  const std::vector<Effect> known = all_but("clearance@", m);
+  const Diagnosis d = diagnose(subject::Subject(m), data, known);
+  EXPECT_EQ(d.verdict, Verdict::unknown_effect);
+  EXPECT_EQ(d.pattern, "an unknown law at one place explains more than these do: drive rz");
+  std::set<std::string> named;
+  for (const PlacedEffect& e : d.missing) named.insert(e.effect->name);
+  EXPECT_EQ(named, (std::set<std::string>{"hardening@drive.rz", "load_friction@drive.rz"}));
+}
+
 // What a law that is none of these does, a + b, is within the laws of one place. Four effects elsewhere add up to it
 // too. By the definition the place has ln B(1600, 2), and each of the four its prior odds and ln B(400, 1).
 TEST(AtOnePlace, StandsForEffectsThatAddUpToIt) {
@@ -152,10 +218,11 @@ TEST(AtOnePlace, StandsForEffectsThatAddUpToIt) {
   const Selection four = found({2, 3, 4, 5}, VectorX::Constant(4, 20));
   ASSERT_LT(four.fit.chi2, 0.1);
   EXPECT_FALSE(at_one_place(all, candidates, four, more + 0.1));
-  const std::optional<Selection> there = at_one_place(all, candidates, four, more - 0.1);
-  ASSERT_TRUE(there);
-  EXPECT_TRUE(there->effects.empty());
-  EXPECT_NEAR(there->fit.chi2, 1600, 1);
+  const std::optional<AllAtOnePlace> at = at_one_place(all, candidates, four, more - 0.1);
+  ASSERT_TRUE(at);
+  EXPECT_FALSE(at->instead);
+  EXPECT_TRUE(at->there.effects.empty());
+  EXPECT_NEAR(at->there.fit.chi2, 1600, 1);
   // So clear that no further effect is looked for, unless the law leaves more than noise: here 20² of six numbers.
   ASSERT_GT(more, clearly_one_place);
   EXPECT_TRUE(is_all_at_one_place(all, candidates, four));
@@ -165,11 +232,11 @@ TEST(AtOnePlace, StandsForEffectsThatAddUpToIt) {
       beside.observations, four.effects, fit_of_all(beside.observations, four.effects, four.fit.values), {}, {}};
   EXPECT_FALSE(is_all_at_one_place(all, candidates, not_all));
   // An effect at the place itself stays.
-  const std::optional<Selection> named = at_one_place(all, candidates, found({0, 4}, test::values({28, 20})), 0);
+  const std::optional<AllAtOnePlace> named = at_one_place(all, candidates, found({0, 4}, test::values({28, 20})), 0);
   ASSERT_TRUE(named);
-  ASSERT_EQ(named->effects.size(), 1u);
-  EXPECT_EQ(named->effects[0].effect->name, "a");
-  EXPECT_NEAR(named->fit.values(0), 20 / r, 0.1);
+  ASSERT_EQ(named->there.effects.size(), 1u);
+  EXPECT_EQ(named->there.effects[0].effect->name, "a");
+  EXPECT_NEAR(named->there.fit.values(0), 20 / r, 0.1);
 }
 
 }  // namespace

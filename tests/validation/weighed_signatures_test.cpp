@@ -155,7 +155,8 @@ TEST(Weighed, AreThoseOfObservationsWithWhatWasFound) {
     ASSERT_EQ(law.whatever_the_law == nullptr, fresh->whatever_the_law == nullptr) << name;
     if (law.whatever_the_law) expect_same_columns(law.whatever_the_law(), fresh->whatever_the_law(), name);
     ASSERT_EQ(law.any_curve == nullptr, fresh->any_curve == nullptr) << name;
-    if (law.any_curve) expect_same_columns(law.any_curve(), fresh->any_curve(), name);
+    for (const Curves c : all_curves)
+      if (law.any_curve) expect_same_columns(law.any_curve(c), fresh->any_curve(c), name);
     ++compared;
     moved += std::abs(law.lambda - s.lambda) > 0.1 * s.lambda;
     whatever += law.whatever_the_law != nullptr;
@@ -189,7 +190,8 @@ TEST(WhateverTheLaw, HoldsTheLawsOfALoadAndOfAMember) {
     ++(load ? turned : softer);
   }
   const effects::PlacedEffect last{&l.effects.back(), {}};
-  EXPECT_EQ(Changes(l.o, {last}, 1).by_any_curve(last).cols(), 0) << "statics tells forces in machines alone";
+  EXPECT_EQ(Changes(l.o, {last}, 1).by_any_curve(last, Curves::powers).cols(), 0)
+      << "statics tells forces in machines alone";
   EXPECT_GE(turned, 3u);
   EXPECT_GE(softer, 30u);
 }
@@ -205,7 +207,7 @@ TEST(WhateverTheLaw, HoldsTheLawsOfAPlaceInAMachine) {
     EXPECT_TRUE(e.place || !s.any_curve) << e.name;
     const bool sum = e.name.starts_with("linear@") || e.name.starts_with("pull@") || e.name.starts_with("push@");
     if (!s.any_curve || !(sum || e.name.starts_with("contact@"))) continue;
-    const MatrixX span = statistics::orthonormal(s.any_curve(), 1e-6);
+    const MatrixX span = statistics::orthonormal(s.any_curve(Curves::powers), 1e-6);
     EXPECT_LT((s.basis - span * (span.transpose() * s.basis)).norm(), sum ? 1e-6 : 0.01) << e.name;
     ++(sum ? sums : contacts);
   }
@@ -250,9 +252,55 @@ TEST(WhateverTheLaw, HoldsTheLawsOfTheSensorOfAMachine) {
   EXPECT_EQ(found, 1u);
 }
 
-// Places where no law acts are known too. With nothing but an entry of the catalogue these are the members and the
-// sensor; where a law of theirs is known, none.
-TEST(PlacesWithoutLaw, AreTheMembersAndTheSensorWhereNoLawActs) {
+/// The share of a change outside what these columns span.
+double outside(const VectorX& change, const MatrixX& columns) {
+  const MatrixX span = statistics::orthonormal(columns, 1e-6);
+  return (change - span * (span.transpose() * change)).norm() / change.norm();
+}
+
+// A load at another point or in another direction, a load cell with another gain: all are within what may happen to the
+// load, of a machine that is loaded at T and of one that is loaded on a handle as well, where the handle's is not the
+// one at T. To the first order.
+TEST(WhateverTheLaw, HoldsTheLawsOfTheLoadsOfAMachine) {
+  const Mechanism m = test::with(test::device("arm"), "loads", "{handle: {point: [40 mm, -30 mm, 90 mm]}}");
+  prediction::SimulationOptions o;
+  measurement::Measurements plan = prediction::campaign("paper", m, 50, 2);
+  const Looked alone(Measured{m, prediction::simulate(m, plan, o)});
+  plan.instruments.load_points = {"handle"};
+  measurement::Random random(4);
+  for (measurement::Reading& r : plan.readings) {
+    r.at_tool = r.load;
+    r.at_points = {Vector6::NullaryExpr([&](Eigen::Index i) { return i < 3 ? random.uniform(-20, 20) : 0; })};
+  }
+  const Looked both(Measured{m, prediction::simulate(m, plan, o)});
+  for (const Looked* l : {&alone, &both}) {
+    const Changes changes(l->o, {}, 1);
+    std::map<std::string, MatrixX> columns;
+    for (const subject::Place& p : l->o.subject().places())
+      if (p.kind == subject::PlaceKind::load) columns[p.part] = changes.by_whatever(p, {});
+    ASSERT_EQ(columns.size(), 2u);
+    EXPECT_EQ(columns.at("loads.handle").cols() > 0, l == &both);
+    const MatrixX all = statistics::side_by_side({columns.at("load"), columns.at("loads.handle")}, l->o.numbers());
+    std::size_t found = 0;
+    for (const effects::Effect& e : l->effects) {
+      const bool at_load = e.name.starts_with("moved@") && e.place->kind == subject::PlaceKind::load;
+      if (!at_load && e.name != "load_gain" && e.name != "load_misalignment") continue;
+      const MatrixX made = changes.by({&e, {}}).columns;
+      for (const VectorX change : made.colwise()) {
+        if (change.isZero(0)) continue;  // a handle that nothing loads
+        EXPECT_LT(outside(change, at_load ? columns.at(e.place->part) : all), 0.01) << e.name;
+        ++found;
+        if (!at_load || l == &alone) continue;
+        EXPECT_GT(outside(change, columns.at(e.place->part == "load" ? "loads.handle" : "load")), 0.1) << e.name;
+      }
+    }
+    EXPECT_EQ(found, l == &both ? 10u : 7u);
+  }
+}
+
+// Places where no law acts are known too. With nothing but an entry of the catalogue these are the members, the load
+// and the sensor; where a law of theirs is known, none.
+TEST(PlacesWithoutLaw, AreTheMembersTheLoadAndTheSensorWhereNoLawActs) {
   const Looked l("scara");
   const auto without = [&](const auto& is_known) {
     std::vector<effects::Effect> known;
@@ -265,7 +313,7 @@ TEST(PlacesWithoutLaw, AreTheMembersAndTheSensorWhereNoLawActs) {
     return out;
   };
   const std::vector<std::string> all = without([](const effects::Effect& e) { return !e.place; });
-  EXPECT_EQ(all, (std::vector<std::string>{"column", "fore_link", "quill", "sensor", "upper_link"}));
+  EXPECT_EQ(all, (std::vector<std::string>{"column", "fore_link", "load", "quill", "sensor", "upper_link"}));
   EXPECT_EQ(without([](const effects::Effect& e) { return e.name != "factor@fore_link"; }),
             std::vector<std::string>{"fore_link"});
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "msa/base/index.h"
 #include "validation/diagnosis/evidence.h"
 #include "validation/effects/place_effects.h"
 #include "validation/parallel/cases.h"
@@ -20,7 +21,7 @@ namespace {
 
 constexpr double left_of_a_column = 1e-3;  // of a unit column beside the fit: less is rounding
 constexpr double together_told = 0.95;     // probability
-constexpr double half = 0.5;               // of a place's prior: its laws, or any curve
+constexpr double share_of_one = 0.2;       // of a place's prior: its laws, two kinds of curve, both beside its laws
 constexpr std::size_t looked_into = 6;     // places: the columns are computed each time
 constexpr double beyond_chance = 30;       // in χ², of a few hundred that are looked at
 
@@ -57,15 +58,22 @@ std::vector<LawsAtPlace> laws_by_place(const Explanations& all) {
 
 bool has_curve(const LawsAtPlace& p) { return !p.without && p.laws.front()->any_curve; }
 
-/// By all laws at a place, or by any curve there as well.
+AtPlace::Span span_of(const std::vector<MatrixX>& columns, const VectorX& residual) {
+  if (columns.empty()) return {};
+  const MatrixX span = statistics::orthonormal(statistics::side_by_side(columns, residual.size()), left_of_a_column);
+  return {(span.transpose() * residual).squaredNorm(), static_cast<int>(span.cols())};
+}
+
+/// By all laws at a place; with `curves` by any curve there too, alone and beside the laws.
 AtPlace explained_by(const Weighed& all, const LawsAtPlace& place, const VectorX& residual, const MatrixX& fitted,
-                     bool any_curve) {
+                     bool curves) {
   AtPlace out;
   out.without_law = place.without;
-  out.prior = (has_curve(place) ? half : 1) * place.prior;
+  out.prior = (has_curve(place) ? share_of_one : 1) * place.prior;
   double most = -1;
   std::vector<MatrixX> columns;
-  Columns whatever = place.without ? all.whatever(*place.without) : nullptr, curve = nullptr;
+  Columns whatever = place.without ? all.whatever(*place.without) : nullptr;
+  AnyCurve curve = nullptr;
   const auto add = [&](const MatrixX& basis) {
     const MatrixX beside = basis - fitted * (fitted.transpose() * basis);
     for (const auto column : beside.colwise())
@@ -81,13 +89,17 @@ AtPlace explained_by(const Weighed& all, const LawsAtPlace& place, const VectorX
     out.other_way = law.one_sided && law.start_along(residual) > 0;
   }
   if (whatever) add(whatever());
-  if (any_curve) add(curve());
-  if (columns.empty()) return out;
-  const MatrixX together = statistics::side_by_side(columns, residual.size());
-  columns.clear();
-  const MatrixX span = statistics::orthonormal(together, left_of_a_column);
-  out.dimension = static_cast<int>(span.cols());
-  out.gain = (span.transpose() * residual).squaredNorm();
+  out.spans.push_back(span_of(columns, residual));
+  const std::vector<MatrixX> laws = std::move(columns);
+  for (const Curves kind : all_curves) {
+    if (!curves) break;
+    columns.clear();
+    add(curve(kind));
+    out.spans.push_back(span_of(columns, residual));
+    columns.insert(columns.end(), laws.begin(), laws.end());
+    out.spans.push_back(span_of(columns, residual));
+  }
+  std::erase_if(out.spans, [](const AtPlace::Span& s) { return s.dimension == 0; });
   return out;
 }
 
@@ -102,8 +114,8 @@ std::vector<std::size_t> worth_any_curve(const std::vector<LawsAtPlace>& places,
   std::vector<std::size_t> out, others;
   for (std::size_t i = 0; i < places.size(); ++i)
     if (has_curve(places[i])) (has_effect(places[i]) ? out : others).push_back(i);
-  std::stable_sort(others.begin(), others.end(),
-                   [&](std::size_t a, std::size_t b) { return by_laws[a].gain > by_laws[b].gain; });
+  const auto gain = [&](std::size_t i) { return by_laws[i].spans.empty() ? 0 : by_laws[i].most().gain; };
+  std::stable_sort(others.begin(), others.end(), [&](std::size_t a, std::size_t b) { return gain(a) > gain(b); });
   others.resize(std::min(looked_into, others.size()));
   out.insert(out.end(), others.begin(), others.end());
   return out;
@@ -151,36 +163,47 @@ std::vector<AtPlace> at_places(const Weighed& all, const Hypothesis& effects, co
                           [&](std::size_t i) { out[i] = explained_by(all, places[i], fit.residual, fitted, false); });
   const std::vector<std::size_t> curved = worth_any_curve(places, out, effects);
   parallel::for_each_case(curved.size(), 1, threads, [&](std::size_t k) {
-    AtPlace& at = out[curved[k]];
-    const AtPlace any = explained_by(all, places[curved[k]], fit.residual, fitted, true);
-    if (log_evidence(any.gain, any.dimension, false) > log_evidence(at.gain, at.dimension, false)) at = any;
+    out[curved[k]] = explained_by(all, places[curved[k]], fit.residual, fitted, true);
   });
-  std::erase_if(out, [](const AtPlace& p) { return p.dimension == 0; });
+  std::erase_if(out, [](const AtPlace& p) { return p.spans.empty(); });
   return out;
+}
+
+const AtPlace::Span& AtPlace::most() const {
+  return *std::max_element(spans.begin(), spans.end(), [](const Span& a, const Span& b) { return a.gain < b.gain; });
+}
+
+double AtPlace::log_odds(double noise) const {
+  std::vector<double> logs;
+  for (const Span& s : spans) logs.push_back(diagnosis::log_evidence(s.gain / noise, s.dimension, false));
+  return std::log(prior) + log_sum_exp(logs);
 }
 
 double log_evidence(const std::vector<AtPlace>& all) {
   std::vector<double> logs;
-  for (const AtPlace& p : all) logs.push_back(std::log(p.prior) + log_evidence(p.gain, p.dimension, false));
+  for (const AtPlace& p : all) logs.push_back(p.log_odds());
   return logs.empty() ? -INFINITY : log_mean_exp(logs) + std::log(static_cast<double>(logs.size()));
 }
 
 double p_value(const std::vector<AtPlace>& all) {
   double out = 1;
-  for (const AtPlace& p : all) out = std::min(out, statistics::chi_squared_tail(p.dimension, p.gain) / p.prior);
+  for (const AtPlace& p : all)
+    for (const AtPlace::Span& s : p.spans)
+      out = std::min(out, statistics::chi_squared_tail(s.dimension, s.gain) / p.prior);
   return out;
 }
 
 std::vector<Localised> localised(const std::vector<AtPlace>& places, double chi2, double numbers, std::size_t most) {
   if (places.empty()) return {};
-  const AtPlace& first = *std::max_element(places.begin(), places.end(),
-                                           [](const AtPlace& a, const AtPlace& b) { return a.gain < b.gain; });
+  AtPlace::Span first;
+  for (const AtPlace& p : places)
+    if (p.most().gain > first.gain) first = p.most();
   const double scale = std::max(1.0, (chi2 - first.gain) / std::max(1.0, numbers - first.dimension));
   std::vector<double> weights;
   std::vector<std::size_t> order;
   for (const AtPlace& p : places) {
     order.push_back(order.size());
-    weights.push_back(std::log(p.prior) + log_evidence(p.gain / scale, p.dimension, false));
+    weights.push_back(p.log_odds(scale));
   }
   const std::vector<double> probability = normalised(weights);
   std::stable_sort(order.begin(), order.end(),
@@ -191,10 +214,10 @@ std::vector<Localised> localised(const std::vector<AtPlace>& places, double chi2
   double sum = 0;
   for (const std::size_t i : order) {
     const AtPlace& p = places[i];
-    if (out.size() == most || sum > together_told || p.gain < beyond_chance) break;
+    if (out.size() == most || sum > together_told || p.most().gain < beyond_chance) break;
     sum += probability[i];
     out.push_back({p.place(), p.best ? p.best->effect.leg : p.without_law->leg,
-                   p.best ? p.best->effect.effect : nullptr, words_of(p), std::min(1.0, p.gain / beyond),
+                   p.best ? p.best->effect.effect : nullptr, words_of(p), std::min(1.0, p.most().gain / beyond),
                    probability[i]});
   }
   return out;

@@ -3,8 +3,8 @@
 // What is missing at a place may be a law that nobody wrote. The signatures of all laws at the place span what such a
 // law can do to the readings, as a curve drawn by hand is a sum of a few shapes; in a machine any curve of deflection
 // over force is tried as well (whatever_the_law.h), at the places whose laws explain most. With g the reduction of χ²
-// by that span, beside the fit, and k its dimension, the evidence for the place is log_evidence(g, k) (evidence.h), of
-// the laws alone or of any curve, whichever is likelier.
+// by such a span, beside the fit, and k its dimension, its evidence is log_evidence(g, k) (evidence.h), and that of the
+// place the mean over its spans.
 //
 // Where the unexplained rest of a misfit acts is told by the same gains. What no place explains makes places harder to
 // tell apart: the gains are divided by s = max(1, χ² left by the best place over the numbers left).
@@ -42,11 +42,19 @@ struct AtPlace {
   const Signature* best = nullptr;  ///< of the laws at the place the one that explains most; null without any
   const PlaceWithoutLaw* without_law = nullptr;  ///< where there is none
   bool other_way = false;                        ///< physics lets that one act to the other side only
-  double gain = 0;                               ///< in χ², by all laws together, or by any curve
-  int dimension = 0;                             ///< of their span
-  /// Prior probability. All places share it alike, and the single legs of a place share that of one place.
+  /// What may explain it: all laws together; where curves are tried, of each kind any curve, alone and beside the laws.
+  struct Span {
+    double gain = 0;  ///< in χ²
+    int dimension = 0;
+  };
+  std::vector<Span> spans;
+  /// Prior probability of each span. All places share it alike, and the single legs of a place share that of one place.
   double prior = 0;
 
+  /// The one that gains most.
+  const Span& most() const;
+  /// ln of the prior times the evidence, of all spans together, where noise has that many times the variance it has.
+  double log_odds(double noise = 1) const;
   const subject::Place& place() const { return best ? *best->effect.effect->place : without_law->place; }
 };
 

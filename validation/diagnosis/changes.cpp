@@ -16,9 +16,12 @@ constexpr double unseen = 1e-6;     // standard deviations of noise
 constexpr double sampled = 0.125;   // share of the readings that leave play open which is asked whether it shows
 constexpr double rounding = 1e-11;  // of a prediction: less is no change
 constexpr double part_of_a_load = 0.1;
+constexpr double hundredth = 1e-2;  // of a machine's load, of its size, or rad
+constexpr const char* load_at_tool = "rig.load_cell";
 constexpr std::size_t most_apart = 4;     // nodes of a load
 constexpr double no_force = 1e-9;         // of the largest
 constexpr double size_of_a_curve = 1e-3;  // m
+constexpr std::size_t parts_of_a_line = 7;
 
 /// A thousandth of the start, where an effect of one parameter is of the first order in it.
 VectorX small_values(const effects::Effect& e) {
@@ -67,6 +70,21 @@ std::vector<VectorX> shapes(const std::vector<effects::EffectParameter>& all, co
       double& value = out.back()(as_index(i));
       value = std::clamp(times * value, p.low, p.high);
     }
+  }
+  return out;
+}
+
+/// By how much a load F differs in the base's axes whose point lies elsewhere along an axis of the platform, which is
+/// turned about an axis, or of which one component has another size; 1 m, 1 rad, once its size. R: of the platform.
+std::vector<Vector6> other_loads(const Vector6& F, const Matrix3& R) {
+  const Vector3 f = F.head<3>(), m = F.tail<3>();
+  std::vector<Vector6> out(12, Vector6::Zero());
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const Vector3 turn = Vector3::Unit(axis);
+    nth(out, axis).tail<3>() = R.col(axis).cross(f);
+    nth(out, 3 + axis) << turn.cross(f), turn.cross(m);
+    nth(out, 6 + axis)(axis) = f(axis);
+    nth(out, 9 + axis)(3 + axis) = m(axis);
   }
   return out;
 }
@@ -122,6 +140,7 @@ MatrixX Changes::by_whatever(const subject::Place& place, std::optional<int> leg
   const frame::FrameDescription* drawn = observations_.subject().frame();
   if (drawn && place.kind == subject::PlaceKind::load)
     if (const frame::LoadCase* load = find(drawn->loads, place.part)) return by_any_load(*load, place.part);
+  if (!drawn && place.kind == subject::PlaceKind::load) return by_any_load_of_a_machine(place);
   if (drawn && place.kind == subject::PlaceKind::member && place.others.empty()) return by_any_elongation(place);
   if (!drawn && place.kind == subject::PlaceKind::member && place.others.empty()) return by_any_section(place, leg);
   return MatrixX(null_.size(), 0);
@@ -144,6 +163,37 @@ MatrixX Changes::by_any_load(const frame::LoadCase& load, const std::string& of)
   for (Eigen::Index axis = 0; most > 0 && axis < 6; ++axis) {
     if (!apart) add(axis, "");
     for (std::size_t i = 0; apart && i < load.nodes.size(); ++i) add(axis, load.nodes[i].first);
+  }
+  return statistics::side_by_side(out, null_.size());
+}
+
+MatrixX Changes::by_any_load_of_a_machine(const subject::Place& place) const {
+  const compare::ResidualStudy& study = observations_.comparison().study;
+  const std::vector<std::string>& points = study.data->instruments.load_points;
+  const bool at_tool = place.path == load_at_tool;
+  const auto point =
+      std::find_if(points.begin(), points.end(), [&](const auto& p) { return place.path == "loads." + p; });
+  if (!at_tool && point == points.end()) return MatrixX(null_.size(), 0);  // which the file has no column for
+  const auto standing = observations_.subject().stand(*study.data, study.standing.get());
+  const auto read = [&](const measurement::Measurements& data) {
+    prediction::PredictionOptions linear;
+    linear.geometry = Geometry::linear;
+    return statistics::rows_of(study.values, standing->predict(data, linear));
+  };
+  const VectorX before = read(*study.data);
+  std::vector<MatrixX> out;
+  for (std::size_t kind = 0; kind < 12; ++kind) {
+    measurement::Measurements other = *study.data;
+    bool same = true;
+    for (measurement::Reading& r : other.readings) {
+      Vector6& load = !at_tool ? r.at_points[as_size(point - points.begin())] : points.empty() ? r.load : r.at_tool;
+      const Vector6 more = other_loads(load, standing->tool(r.pose).R_W)[kind];
+      load += hundredth * (kind < 3 ? standing->size() : 1) * more;
+      same = same && more.isZero(0);
+    }
+    if (same) continue;
+    if (const auto after = outcome_of([&] { return read(observations_.subject().placed(std::move(other))); }))
+      out.emplace_back(before - *after);
   }
   return statistics::side_by_side(out, null_.size());
 }
@@ -188,20 +238,42 @@ bool Changes::is_known_by_statics(const subject::Place& place) const {
   return transmissions_ && known != known_.end() && known->second;
 }
 
-MatrixX Changes::by_any_curve(const effects::PlacedEffect& e) const {
+std::vector<subject::Transmissions::Curve> Changes::curves_of(const effects::PlacedEffect& e, Curves kind) const {
+  std::vector<subject::Transmissions::Curve> out;
+  if (kind == Curves::powers) {
+    for (const double p : {0.0, 0.5, 1.0, 2.0}) {
+      const auto power = [p](double f) { return f == 0 ? 0 : std::pow(std::abs(f), p); };
+      out.emplace_back(power);
+      out.emplace_back([power](double f) { return std::copysign(power(f), f); });
+    }
+    return out;
+  }
+  std::vector<double> forces;
+  const auto note = [&](double f) {
+    if (f != 0) forces.push_back(std::abs(f));
+    return f;
+  };
+  transmissions_->change(*e.effect->place, e.leg, note, *observations_.comparison().study.data);
+  std::sort(forces.begin(), forces.end());
+  out.emplace_back([](double f) { return f == 0 ? 0 : std::copysign(1.0, f); });
+  out.emplace_back([](double f) { return f; });
+  for (std::size_t i = 1; i < parts_of_a_line && !forces.empty(); ++i)
+    for (const double sense : {-1.0, 1.0})
+      out.emplace_back([sense, knee = forces[i * forces.size() / parts_of_a_line]](double f) {
+        return std::max(0.0, sense * f - knee);
+      });
+  return out;
+}
+
+MatrixX Changes::by_any_curve(const effects::PlacedEffect& e, Curves kind) const {
   if (!e.effect->place || !is_known_by_statics(*e.effect->place)) return MatrixX(null_.size(), 0);
   const compare::ResidualStudy& study = observations_.comparison().study;
   std::vector<MatrixX> out;
-  const auto add = [&](const subject::Transmissions::Curve& curve) {
+  for (const subject::Transmissions::Curve& curve : curves_of(e, kind)) {
     const auto told = transmissions_->change(*e.effect->place, e.leg, curve, *study.data);
-    if (!told) return;
+    if (!told) continue;
     const VectorX change = -statistics::rows_of(study.values, *told);
     if (const double length = change.norm(); length > 0) out.emplace_back(size_of_a_curve / length * change);
-  };
-  for (const double p : {0.0, 0.5, 1.0, 2.0}) {
-    const auto power = [p](double f) { return f == 0 ? 0 : std::pow(std::abs(f), p); };
-    add(power);
-    add([power](double f) { return std::copysign(power(f), f); });
   }
   return statistics::side_by_side(out, null_.size());
 }

@@ -6,6 +6,7 @@
 // predicted with any other effect.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -25,6 +26,14 @@ struct Change {
   bool summed = false;
 };
 
+/// Curves of deflection over force f. Contacts, play, springs that harden or soften and one-sided laws are close to
+/// sums of powers; a measured curve, with a knee anywhere, is a broken line.
+enum class Curves {
+  powers,       ///< |f|^p and sign(f)|f|^p, p = 0 (a step, as of play), ½, 1 and 2
+  broken_lines  ///< sign(f), f, and in each sense a bend at six sizes of f between which as many readings lie
+};
+inline constexpr std::array all_curves = {Curves::powers, Curves::broken_lines};
+
 class Changes {
  public:
   /// Statics tells those of the effects that are laws in series with one parameter, at places where it agrees with a
@@ -32,17 +41,16 @@ class Changes {
   Changes(const Observations&, const std::vector<effects::PlacedEffect>&, int threads);
 
   /// What may happen at a place whether or not a law describes it: columns. At a load of a frame a force along and a
-  /// moment about each axis, at each node that it acts on, or, at more than four, at all of them; at a member an
+  /// moment about each axis, at each node that it acts on, or, at more than four, at all of them; at a load of a
+  /// machine another point, another direction, and another size of each of its components; at a member of a frame an
   /// elongation that grows with the force that passes, one that grows in both senses of it, and a step where it turns,
   /// which a gauge on the member itself does not read. At a member of a machine, of every leg or of one: sections that
   /// stretch, twist and bend more about each of their axes, all along it. None at other places.
   MatrixX by_whatever(const subject::Place&, std::optional<int> leg) const;
   bool is_known_by_statics(const subject::Place&) const;
-  /// Any curve of deflection δ over force f, in each freedom of the effect's place in a machine: |f|^p and
-  /// sign(f)|f|^p, p = 0 (a step, as of play), ½, 1 and 2. Contacts, play, springs that harden or soften and
-  /// one-sided laws are close to sums of these. Columns of the size of a motion of 1 mm; none where statics does not
-  /// tell the forces.
-  MatrixX by_any_curve(const effects::PlacedEffect&) const;
+  /// Any curve of deflection δ over force f, in each freedom of the effect's place in a machine. Columns of the size of
+  /// a motion of 1 mm; none where statics does not tell the forces.
+  MatrixX by_any_curve(const effects::PlacedEffect&, Curves) const;
   /// At the start values; nullopt where it has to be predicted.
   std::optional<VectorX> by_statics(const effects::PlacedEffect&) const;
   /// Of any of these effects. Throws where the subject does not stand with it.
@@ -52,8 +60,10 @@ class Changes {
   std::optional<subject::Transmissions::Change> by_force(const effects::PlacedEffect&, const VectorX& values,
                                                          const measurement::Measurements&) const;
   MatrixX by_any_load(const frame::LoadCase&, const std::string& name) const;
+  MatrixX by_any_load_of_a_machine(const subject::Place&) const;
   MatrixX by_any_elongation(const subject::Place&) const;
   MatrixX by_any_section(const subject::Place&, std::optional<int> leg) const;
+  std::vector<subject::Transmissions::Curve> curves_of(const effects::PlacedEffect&, Curves) const;
   bool agrees(const effects::PlacedEffect&) const;
   bool moved_by_play(const effects::EffectInstance&, const std::vector<bool>& readings, VectorX& change) const;
   bool are_seen(const VectorX&) const;

@@ -13,7 +13,6 @@
 #include "validation/diagnosis/rounds.h"
 #include "validation/diagnosis/selection.h"
 #include "validation/diagnosis/splitting.h"
-#include "validation/statistics/columns.h"
 
 namespace deflect::diagnosis {
 namespace {
@@ -49,21 +48,19 @@ void weigh(Diagnosis& d, const LargerTolerances& larger, double unknown, double 
 }
 
 /// Of what is left unexplained: its size, its pattern, where it acts, the entry that comes nearest.
-void describe_left_over(Diagnosis& d, const Weighed& known, const Selection& found, int threads) {
+void describe_left_over(Diagnosis& d, const Weighed& known, const Selection& found,
+                        const std::vector<Localised>& instead, int threads) {
   const Observations& o = found.observations;
   const auto numbers = static_cast<double>(o.numbers());
   const double left = std::max(1.0, found.fit.chi2 - numbers);
   d.share_unexplained = std::min(1.0, left / std::max(left, o.null_residual().squaredNorm() - numbers));
-  d.pattern = pattern_left(o, subject_with(o, found.effects, found.fit.values));
-  d.localised = localised(at_places(known, found.effects, found.fit, threads), found.fit.chi2, numbers);
-  const MatrixX fitted = statistics::orthonormal(found.fit.signature);
-  for (const Signature& s : known.all().laws) {
-    if (s.effect.effect->place) continue;
-    if (const double share = most_gain(known.law(s), found.fit.residual, fitted) / left; share > d.nearest_share) {
-      d.nearest = name_of(s.effect);
-      d.nearest_share = std::min(1.0, share);
-    }
-  }
+  d.localised = !instead.empty()
+                    ? instead
+                    : localised(at_places(known, found.effects, found.fit, threads), found.fit.chi2, numbers);
+  d.pattern = pattern_left(found, d.localised, !instead.empty());
+  const auto [entry, gain] = nearest_entry(known, found.fit);
+  d.nearest = entry;
+  d.nearest_share = std::min(1.0, gain / left);
 }
 
 void sort_candidates(Diagnosis& d) {
@@ -203,9 +200,12 @@ Explained explained(const FirstStep& s, const Candidates& candidates, const std:
   const Weighed known(s.signatures, out.found.observations);
   out.left = left_over(out.patterns, known, out.found.effects, out.found.fit, candidates.threads());
   const double more = out.left.significant() ? 0 : clearly_one_place;
-  if (std::optional<Selection> there = at_one_place(known, candidates, out.found, more)) {
-    out.found = std::move(*there);
-    out.left = left_over(out.patterns, known, out.found.effects, out.found.fit, candidates.threads());
+  if (std::optional<AllAtOnePlace> at = at_one_place(known, candidates, out.found, more)) {
+    out.found = std::move(at->there);
+    if (!at->instead)
+      out.left = left_over(out.patterns, known, out.found.effects, out.found.fit, candidates.threads());
+    else if (!out.left.significant())
+      out.left = *at->instead;
   }
   if (!out.left.significant()) out.patterns.reset();
   return out;
@@ -287,7 +287,7 @@ void conclude(Diagnosis& d, Explained e, const FirstStep& told, const measuremen
     const Weighed known(told.signatures, found.observations);
     found = named_beside_unknown(e.patterns, known, told.candidates, std::move(found));
     e.patterns.reset();
-    describe_left_over(d, known, found, threads);
+    describe_left_over(d, known, found, e.left.instead, threads);
   }
   const Observations& seen = found.observations;
   d.missing = found.effects;

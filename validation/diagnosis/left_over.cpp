@@ -8,20 +8,25 @@
 #include "msa/base/index.h"
 #include "validation/compare/findings.h"
 #include "validation/diagnosis/evidence.h"
+#include "validation/effects/place_effects.h"
+#include "validation/statistics/columns.h"
+#include "validation/statistics/tail.h"
 
 namespace deflect::diagnosis {
 namespace {
 
 // Times the misfit with all effects: without any of them, for them to be most of the matter; then without one of them.
 constexpr double large_part = 4, small_part = 1.25;
+constexpr double nearly_all = 0.95;
 constexpr double clearly_more_noise = 1.1;  // times the σ that is given
+constexpr double small_rest = 0.02;         // of χ²: what a curve leaves of a law with knees
 
 /// The likeliest place.
 const AtPlace* likeliest(const std::vector<AtPlace>& places) {
   const AtPlace* out = nullptr;
   double most = -INFINITY;
   for (const AtPlace& p : places)
-    if (const double l = std::log(p.prior) + log_evidence(p.gain, p.dimension, false); l > most) most = l, out = &p;
+    if (const double l = p.log_odds(); l > most) most = l, out = &p;
   return out;
 }
 
@@ -67,9 +72,44 @@ std::string no_pattern(const Observations& o, const subject::Subject& subject) {
                      none, size);
 }
 
+/// Of a law at these places, of which nothing is left beside it and which is as likely nowhere else; else empty.
+std::string at_places_alone(const std::vector<Localised>& places, bool instead) {
+  double sum = 0, least = 1;
+  std::vector<std::string> at;
+  for (const Localised& l : places) {
+    subject::Place place = l.place;
+    if (l.leg) place.leg = l.leg;
+    sum += l.probability, least = std::min(least, l.share);
+    at.push_back(effects::words_of(place));
+  }
+  if (sum < nearly_all || least < nearly_all) return "";
+  return fmt::format("an unknown law at one place {}: {}",
+                     instead ? "explains more than these do" : fmt::format("takes {:.0f} % of it", 100 * least),
+                     fmt::join(at, " or "));
+}
+
 }  // namespace
 
-std::string pattern_left(const Observations& o, const subject::Subject& subject) {
+std::pair<std::string, double> nearest_entry(const Weighed& all, const Fit& fit) {
+  const MatrixX fitted = statistics::orthonormal(fit.signature);
+  std::pair<std::string, double> out;
+  for (const Signature& s : all.all().laws) {
+    if (s.effect.effect->place) continue;
+    if (const double gain = most_gain(all.law(s), fit.residual, fitted); gain > out.second)
+      out = {name_of(s.effect), gain};
+  }
+  return out;
+}
+
+std::string pattern_left(const Selection& found, const std::vector<Localised>& places, bool instead) {
+  const auto has_effect = [&](const Localised& l) {
+    return std::any_of(found.effects.begin(), found.effects.end(),
+                       [&](const effects::PlacedEffect& e) { return at_the_same_part(e, l.place); });
+  };
+  if (instead || std::none_of(places.begin(), places.end(), has_effect))
+    if (std::string all = at_places_alone(places, instead && !found.effects.empty()); !all.empty()) return all;
+  const Observations& o = found.observations;
+  const subject::Subject subject = subject_with(o, found.effects, found.fit.values);
   const compare::ResidualStudy& s = o.comparison().study;
   std::vector<compare::Pattern> patterns = compare::patterns_of(s);
   std::vector<MatrixX> columns;
@@ -94,7 +134,8 @@ namespace {
 /// An unknown law at one place against the effects of a selection and an unknown law beside them.
 struct OnePlace {
   const subject::Place* place = nullptr;  ///< null where the law is not likelier by what is asked
-  double left = 0;                        ///< of χ²
+  double left = 0, of = 0;                ///< χ² beside it, and without anything
+  LeftOver against = {};                  ///< the effects
 };
 
 OnePlace one_place(const Weighed& all, const Candidates& candidates, const Selection& s, double more) {
@@ -103,38 +144,50 @@ OnePlace one_place(const Weighed& all, const Candidates& candidates, const Selec
                              beside = at_places(all, s.effects, s.fit, candidates.threads());
   const AtPlace *place = likeliest(alone), *further = likeliest(beside);
   if (!place) return {};
-  const double left = std::min(null.chi2 - place->gain, s.fit.chi2 - (further ? further->gain : 0));
+  const auto [gain, dimension] = place->most();
+  const double left = std::min(null.chi2 - gain, s.fit.chi2 - (further ? further->most().gain : 0));
   const double noise = std::max(1.0, left / std::max(1.0, static_cast<double>(s.observations.numbers())));
-  const auto log_odds = [&](const AtPlace& p) {
-    return std::log(p.prior) + log_evidence(p.gain / noise, p.dimension, false);
-  };
   const double found = log_odds_of_all(candidates, s.effects, (null.chi2 - s.fit.chi2) / noise) +
-                       (further ? std::max(0.0, log_odds(*further)) : 0);
-  return {log_odds(*place) < found + more ? nullptr : &place->place(), null.chi2 - place->gain};
+                       (further ? std::max(0.0, further->log_odds(noise)) : 0);
+  const double likelier = place->log_odds(noise) - found;
+  if (likelier < more) return {};
+  const double beyond = std::max(0.0, gain - (null.chi2 - s.fit.chi2)) / noise;
+  const auto freedom = std::max<Eigen::Index>(1, dimension - s.fit.signature.cols());
+  return {&place->place(),
+          null.chi2 - gain,
+          null.chi2,
+          {likelier, std::min(1.0, statistics::chi_squared_tail(freedom, beyond) / place->prior),
+           localised(alone, null.chi2, static_cast<double>(s.observations.numbers()))}};
 }
 
 }  // namespace
 
-std::optional<Selection> at_one_place(const Weighed& all, const Candidates& candidates, const Selection& s,
-                                      double more) {
-  const subject::Place* place = s.effects.empty() ? nullptr : one_place(all, candidates, s, more).place;
-  if (!place) return std::nullopt;
-  Selection there = s;
+std::optional<AllAtOnePlace> at_one_place(const Weighed& all, const Candidates& candidates, const Selection& s,
+                                          double more) {
+  const OnePlace one = s.effects.empty() ? OnePlace{} : one_place(all, candidates, s, more);
+  if (!one.place) return std::nullopt;
+  AllAtOnePlace out{s};
   for (std::size_t i = s.effects.size(); i-- > 0;) {
-    if (at_the_same_part(s.effects[i], *place)) continue;
-    auto [others, values] = without(there.effects, there.fit.values, i);
-    there.effects = std::move(others);
-    there.fit.values = std::move(values);
-    if (i < there.ties.size()) there.ties.erase(there.ties.begin() + as_index(i));
+    if (at_the_same_part(s.effects[i], *one.place)) continue;
+    auto [others, values] = without(out.there.effects, out.there.fit.values, i);
+    out.there.effects = std::move(others);
+    out.there.fit.values = std::move(values);
+    if (i < out.there.ties.size()) out.there.ties.erase(out.there.ties.begin() + as_index(i));
   }
-  if (there.effects.size() == s.effects.size()) return std::nullopt;
-  there.fit = fit_of_all(s.observations, there.effects, there.fit.values);
-  return there.fit.found ? std::optional(std::move(there)) : std::nullopt;
+  if (out.there.effects.size() == s.effects.size()) {
+    out.instead = one.against;
+    return out.instead->significant() ? std::optional(std::move(out)) : std::nullopt;
+  }
+  out.there.fit = fit_of_all(s.observations, out.there.effects, out.there.fit.values);
+  return out.there.fit.found ? std::optional(std::move(out)) : std::nullopt;
 }
 
 bool is_all_at_one_place(const Weighed& all, const Candidates& candidates, const Selection& s) {
-  const OnePlace there = one_place(all, candidates, s, clearly_one_place);
-  return there.place && there.left < most_by_noise(static_cast<double>(s.observations.numbers()));
+  const OnePlace one = one_place(all, candidates, s, clearly_one_place);
+  if (!one.place) return false;
+  const bool others =
+      std::any_of(s.effects.begin(), s.effects.end(), [&](const auto& e) { return !at_the_same_part(e, *one.place); });
+  return one.left < most_by_noise(static_cast<double>(s.observations.numbers())) + (others ? small_rest * one.of : 0);
 }
 
 Selection named_beside_unknown(const std::shared_ptr<const WhitenedFamilies>& patterns, const Weighed& all,

@@ -6,6 +6,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "validation/diagnosis/at_places.h"
 #include "validation/diagnosis/selection.h"
@@ -17,6 +19,8 @@ namespace deflect::diagnosis {
 struct LeftOver {
   double log_evidence = 0;  ///< in favour of something unknown
   double p_value = 1;       ///< chance of as much where only noise and tolerances are left
+  /// The places of an unknown law that stands for all effects (AllAtOnePlace); empty where it is beside them.
+  std::vector<Localised> instead = {};
 
   bool significant() const { return log_evidence > 2 && p_value < least_p; }
   static constexpr double least_p = 3e-3;
@@ -25,20 +29,31 @@ struct LeftOver {
 LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>&, const Weighed&, const Hypothesis& fitted, const Fit&,
                    int threads);
 
-/// What this subject leaves, in words.
-std::string pattern_left(const Observations&, const subject::Subject&);
+/// Of the entries without a place the one that takes most of what the fit leaves, and how much, in χ²; "" and 0 where
+/// none takes any.
+std::pair<std::string, double> nearest_entry(const Weighed&, const Fit&);
 
-/// Several effects can add up to what one law does that none of them is. The effects that are of one place, fitted
-/// anew, where an unknown law there alone is likelier than all the effects and an unknown law beside them, by `more` in
-/// ln of the odds; nullopt where it is not, and where all effects are of that place. Noise counts as large as the
-/// better of the two leaves it.
-std::optional<Selection> at_one_place(const Weighed&, const Candidates&, const Selection&, double more);
+/// What these effects leave, in words: the places where an unknown law takes nearly all of it, if none of the effects
+/// is there or the law is `instead` of them; else its patterns.
+std::string pattern_left(const Selection&, const std::vector<Localised>&, bool instead);
+
+/// Several effects can add up to what one law does that none of them is.
+struct AllAtOnePlace {
+  Selection there;  ///< the effects that are of that place, fitted anew
+  /// Where all of them are: that law against the effects.
+  std::optional<LeftOver> instead = {};
+};
+/// Where an unknown law at one place alone is likelier than all the effects and an unknown law beside them, by `more`
+/// in ln of the odds; nullopt where it is not. Noise counts as large as the better of the two leaves it. Where all
+/// effects are of that place, nullopt as well for a single one, and where the law takes no more off than they do but by
+/// chance.
+std::optional<AllAtOnePlace> at_one_place(const Weighed&, const Candidates&, const Selection&, double more);
 
 /// ln of the odds by which a law at one place must be likelier, where effects alone leave nothing unknown.
 inline const double clearly_one_place = called_for - std::log(Candidates::prior_unknown);
 
-/// Whether that law is clearly likelier, whatever the places of the effects, and leaves no more than noise does: then
-/// no further effects are to be looked for.
+/// Whether that law is clearly likelier, whatever the places of the effects, and leaves no more than noise does; where
+/// an effect is of another place, little more: then no further effects are to be looked for.
 bool is_all_at_one_place(const Weighed&, const Candidates&, const Selection&);
 
 /// Those of the effects that are called for even beside something unknown: where it takes what a common pattern can,

@@ -19,10 +19,11 @@ struct Signature {
   /// shapes, of which only one applies.
   MatrixX basis;
   bool shaped = false;
-  VectorX start;           ///< change of the whitened residual at the start values is basis · start
-  double lambda = 0;       ///< its norm
-  bool one_sided = false;  ///< physics fixes the amplitude's sign (where shaped, that of the columns)
-  Columns whatever_the_law = nullptr, any_curve = nullptr;  ///< at its place (WhateverTheLaw)
+  VectorX start;                       ///< change of the whitened residual at the start values is basis · start
+  double lambda = 0;                   ///< its norm
+  bool one_sided = false;              ///< physics fixes the amplitude's sign (where shaped, that of the columns)
+  Columns whatever_the_law = nullptr;  ///< at its place, as any_curve (WhateverTheLaw)
+  AnyCurve any_curve = nullptr;
 
   int amplitudes() const { return shaped ? 1 : static_cast<int>(basis.cols()); }
   /// Inner product of the change at the start values with a residual.

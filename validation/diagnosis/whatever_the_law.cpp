@@ -42,9 +42,9 @@ Columns WhateverTheLaw::at(const subject::Place& place, std::optional<int> leg,
   return [all = columns_, found, o = std::move(o)] { return as_seen(*o, found->second); };
 }
 
-Columns WhateverTheLaw::curve_at(const effects::PlacedEffect& e, std::shared_ptr<const Observations> o) const {
+AnyCurve WhateverTheLaw::curve_at(const effects::PlacedEffect& e, std::shared_ptr<const Observations> o) const {
   if (!e.effect->place || !changes_->is_known_by_statics(*e.effect->place)) return nullptr;
-  return [changes = changes_, e, o = std::move(o)] { return as_seen(*o, changes->by_any_curve(e)); };
+  return [changes = changes_, e, o = std::move(o)](Curves c) { return as_seen(*o, changes->by_any_curve(e, c)); };
 }
 
 }  // namespace deflect::diagnosis

@@ -15,6 +15,7 @@ namespace deflect::diagnosis {
 /// Columns over the measured numbers, whitened, of unit length, without those that tolerances hide. Computed at each
 /// call: kept for all places they would take more memory than all else.
 using Columns = std::function<MatrixX()>;
+using AnyCurve = std::function<MatrixX(Curves)>;
 
 /// A place in all legs (0) or in one of them, by a name of its own; all that can be wrong with a sensor is at one.
 using Spot = std::pair<std::string, int>;
@@ -25,11 +26,11 @@ class WhateverTheLaw {
   /// `columns`: of members and loads those of Changes::by_whatever(), of sensors channel_shapes().
   WhateverTheLaw(std::shared_ptr<const Changes>, std::map<Spot, MatrixX> columns);
 
-  /// At sensors, members, and loads of frames, as these observations weigh it; null elsewhere, and at groups.
+  /// At sensors, members and loads, as these observations weigh it; null elsewhere, and at groups.
   Columns at(const subject::Place&, std::optional<int> leg, std::shared_ptr<const Observations>) const;
   /// Any curve of deflection over force where an effect in a machine acts (Changes::by_any_curve()); null where statics
   /// does not tell the forces.
-  Columns curve_at(const effects::PlacedEffect&, std::shared_ptr<const Observations>) const;
+  AnyCurve curve_at(const effects::PlacedEffect&, std::shared_ptr<const Observations>) const;
 
  private:
   std::shared_ptr<const Changes> changes_;
