@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "msa/base/error.h"
 #include "validation/statistics/columns.h"
@@ -164,24 +165,27 @@ double beyond_two_at_a_place(const Plan::Told& told, const std::vector<std::stri
 /// "yields" of "yields@elbow.rz".
 std::string law_of(const effects::Effect& e) { return e.name.substr(0, e.name.find('@')); }
 
-/// Whether a place of one part is a part of the group.
-bool is_part(const subject::Place& one, const subject::Place& group) {
-  if (!one.others.empty()) return false;
-  if (one.path == group.path) return one.freedoms == group.freedoms;
-  return std::any_of(group.others.begin(), group.others.end(),
-                     [&](const subject::OtherPart& o) { return o.path == one.path && o.freedoms == one.freedoms; });
+using Parts = std::set<std::pair<std::string, std::vector<std::size_t>>>;
+Parts parts_of(const subject::Place& p) {
+  Parts out = {{p.path, p.freedoms}};
+  for (const subject::OtherPart& o : p.others) out.emplace(o.path, o.freedoms);
+  return out;
 }
 
-/// The same with the law of a group, which is that law at all of its parts together.
+/// The same with the law of a group, which is that law at all of its parts together, one by one or in smaller groups:
+/// nothing is left where these are candidates.
 double beyond_its_parts(const Plan::Told& told, const effects::Effect& e, const std::vector<std::string>& left_out) {
   if (!e.place || e.place->others.empty()) return told.change.norm();
-  std::vector<MatrixX> parts;
-  for (const Signature& s : told.signatures)
-    if (s.effect.effect->place && is_part(*s.effect.effect->place, *e.place) && law_of(*s.effect.effect) == law_of(e) &&
-        std::find(left_out.begin(), left_out.end(), s.effect.effect->name) == left_out.end())
-      parts.push_back(s.basis);
-  const MatrixX all = statistics::orthonormal(statistics::side_by_side(parts, told.change.size()), 1e-6);
-  return (told.change - all * (all.transpose() * told.change)).norm();
+  Parts all = parts_of(*e.place), found;
+  for (const Signature& s : told.signatures) {
+    const effects::Effect& other = *s.effect.effect;
+    if (!other.place || law_of(other) != law_of(e) ||
+        std::find(left_out.begin(), left_out.end(), other.name) != left_out.end())
+      continue;
+    const Parts own = parts_of(*other.place);
+    if (std::includes(all.begin(), all.end(), own.begin(), own.end())) found.insert(own.begin(), own.end());
+  }
+  return found == all ? 0 : told.change.norm();
 }
 
 /// The same with the factor of one load, which is that of all loads less those of the others.

@@ -160,7 +160,7 @@ class Examined {
       out.answer.probability = d.candidates.front().probability;
     }
     count_intervals(d, hidden, out);
-    if (!gone.empty()) count_places(d, hidden.front(), out);
+    if (!gone.empty()) count_places(d, out);
     if (out.kind == SetKind::one && out.lambda > 7 && plan.nominal_elsewhere.size() > 0)
       predict_new_poses(d, plan, truth, out);
   }
@@ -191,11 +191,15 @@ class Examined {
                                             [&](const subject::OtherPart& o) { return is_one(o.path); });
   }
 
-  /// The places told, and those among the hidden effect's parts or of an effect of its class.
-  static void count_places(const Diagnosis& d, const Hidden& hidden, SubjectSet& out) {
+  /// The places told, and those where the hidden effect is or one of its class.
+  void count_places(const Diagnosis& d, SubjectSet& out) const {
+    const EffectClass& hidden = out.classes.front();
     const auto tell = [&](const std::string& name, const std::optional<subject::Place>& place) {
+      const auto is_there = [&](const effects::Effect& e) {
+        return place && e.place && holds(hidden, e.name) && within(*place, *e.place);
+      };
       out.told.push_back(name);
-      out.told_rightly += (place && within(*place, *hidden.effect.effect->place)) || holds(out.classes.front(), name);
+      out.told_rightly += holds(hidden, name) || std::any_of(effects_.begin(), effects_.end(), is_there);
     };
     for (const effects::PlacedEffect& e : d.missing) tell(e.effect->name, e.effect->place);
     if (d.unexplained)
@@ -259,9 +263,13 @@ class Examined {
     return subject_;
   }
 
+  /// Or one other effect does what both do together, as a spring does what yields to pull and what yields to push.
   static bool too_near(const Plan& plan, const std::vector<Hidden>& two) {
     constexpr double most_alike = 0.9;  // cosine
-    return cosine(two[0], two[1]) >= most_alike || meet(alike(plan, two[0]), alike(plan, two[1]));
+    Hidden both = two[0];
+    both.change += two[1].change;
+    return cosine(two[0], two[1]) >= most_alike || meet(alike(plan, two[0]), alike(plan, two[1])) ||
+           alike(plan, both).size() > 1;
   }
 
   std::optional<Hidden> drawn_one(const Plan& plan, bool place, double lambda, Random& random) const {
