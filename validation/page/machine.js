@@ -40,14 +40,14 @@ function measured(scene3d) {
 }
 
 /**
- * By cell: 'guilty', 'purple' where what is tied with it acts, or nothing. The end of a member is marked by its outermost
+ * By cell: 'guilty', 'purple' where what is tied with it or something unknown acts, or nothing. The end of a member is marked by its outermost
  * element.
  */
 function marksOf({bodies, cells, guilty, tied = []}) {
   const first = {}, last = {};
   cells.forEach(([, , i], k) => (first[i] ??= k, last[i] = k));
   const among = (names, i, k) => names.includes('member ' + bodies[i].part) || (first[i] === k && names.includes('start of ' + bodies[i].part)) || (last[i] === k && names.includes('end of ' + bodies[i].part));
-  return cells.map(([, , i], k) => (bodies[i].guilty || among(guilty, i, k) ? 'guilty' : among(tied, i, k) ? 'purple' : ''));
+  return cells.map(([, , i], k) => (bodies[i].guilty || among(guilty, i, k) ? 'guilty' : bodies[i].tied || among(tied, i, k) ? 'purple' : ''));
 }
 
 /** Members, joints, tool point and the unloaded shape: what the sliders move. */
@@ -71,8 +71,8 @@ function built(scene3d, size) {
     return mesh;
   });
   const knots = joints.map((joint) => {
-    const mesh = new THREE.Mesh(joint.driven ? bodies3d.block : bodies3d.ball, materials[joint.guilty ? 'guilty' : joint.driven ? 'pale' : 'quiet']);
-    const radius = Math.min(0.03 * size, Math.max(2 * thin, 0.62 * (thickest[joint.point] || 0), joint.guilty ? 4 * thin : 0));
+    const mesh = new THREE.Mesh(joint.driven ? bodies3d.block : bodies3d.ball, materials[joint.guilty ? 'guilty' : joint.tied ? 'purple' : joint.driven ? 'pale' : 'quiet']);
+    const radius = Math.min(0.03 * size, Math.max(2 * thin, 0.62 * (thickest[joint.point] || 0), joint.guilty || joint.tied ? 4 * thin : 0));
     mesh.scale.setScalar(joint.driven ? 1.8 * radius : radius);
     mesh.userData = {words: nameOf(joint) + (joint.driven ? ', driven' : ''), point: joint.point};
     root.add(mesh);
@@ -216,7 +216,7 @@ function legendOf(scene3d, state, guilt, residuals, forces) {
   const shape = scene3d.poses[state.pose].shapes[state.shape];
   return [
     scene3d.guilty.length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--guilty)'}}), guilt + ': ' + shorten(scene3d.guilty)) : null,
-    (scene3d.tied || []).length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--purple)'}}), 'As likely here: ' + shorten(scene3d.tied)) : null,
+    (scene3d.tied || []).length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--purple)'}}), (scene3d.tiedWords || 'As likely here') + ': ' + shorten(scene3d.tied)) : null,
     el('div', {}, `Thin lines: unloaded; solid: deflection × ${num(state.scale, 3)}`),
     (scene3d.sensors || []).length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--blue)'}}), 'sensors') : null,
     shape && shape.arrows.length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--text)'}}), scene3d.kind === 'frame' ? 'loads' : 'load on the tool') : null,

@@ -52,17 +52,33 @@ const listed = {members: 'member', supports: 'support', springs: 'spring', senso
 const partsOf = ({path, also = []}) => [path, ...also].map((p) => p.split('.')).filter(([list]) => listed[list])
   .map(([list, name, end]) => (list === 'members' && (end === 'start' || end === 'end') ? `${end} of ${name}` : `${listed[list]} ${name}`));
 
+const unmarked = (names) => [...new Set(names)].filter((name) => !data.scene.guilty.includes(name));
+
 /** Parts of a frame in which what is tied with the best candidate acts. */
 function tiedParts() {
   const rivals = of('diagnosis').flatMap((d) => d.ties || []).flatMap((t) => t.rivals).flatMap((r) => r.effects).filter((e) => e.place);
-  return [...new Set(rivals.flatMap((e) => partsOf(e.place)))].filter((name) => !data.scene.guilty.includes(name));
+  return unmarked(rivals.flatMap((e) => partsOf(e.place)));
+}
+
+/** Parts in which something unknown may act; those of a machine are marked as such. */
+function suspects() {
+  const places = of('diagnosis').filter((d) => d.unexplained.significant).flatMap((d) => d.unexplained.localised || []).map((l) => l.place);
+  if (data.scene.kind === 'frame') return unmarked(places.flatMap(partsOf));
+  const all = [...data.scene.bodies, ...data.scene.joints];
+  return [...new Set(places.flatMap(({part, leg}) => {
+    const [, name, end] = part.match(/^(.*?)(?:\.(start|end))?$/);
+    const found = all.filter((each) => !each.guilty && (name === each.part || name.endsWith('.' + each.part)) && (!leg || each.leg === `leg ${leg}`));
+    if (end && !leg) return found.map((each) => `${end} of ${each.part}`);
+    for (const each of found) each.tied = true;
+    return found.map((each) => (leg ? `leg ${leg} ` : '') + each.part);
+  }))];
 }
 
 function machineFigure() {
-  if (data.scene.kind === 'frame') {
-    const tied = data.scene.tied = tiedParts();
-    for (const foot of data.scene.ground) foot.tied = tied.includes(foot.name);
-  }
+  const unknown = suspects();
+  data.scene.tied = unknown.length ? unknown : data.scene.kind === 'frame' ? tiedParts() : [];
+  if (unknown.length) data.scene.tiedWords = unknown.length > 1 ? 'Something unknown acts at one of these' : 'Something unknown acts here';
+  for (const foot of data.scene.kind === 'frame' ? data.scene.ground : []) foot.tied = data.scene.tied.includes(foot.name);
   if (data.scene.kind === 'frame' && data.versions.length) return figure('machine', 'The frame under its loads', 'Drag to turn, scroll or pinch to zoom. Arrows with names: sensors.', attempt('The frame', () => machine(data.scene, data.versions[0], guilt())));
   if (data.scene.kind === 'frame') return figure('machine', 'The frame under its loads', 'Drag to turn, scroll or pinch to zoom.', attempt('The frame', () => machine(data.scene, null, '')));
   const version = data.versions[0];
