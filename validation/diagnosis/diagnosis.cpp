@@ -54,10 +54,9 @@ void describe_left_over(Diagnosis& d, const Weighed& known, const Selection& fou
   const auto numbers = static_cast<double>(o.numbers());
   const double left = std::max(1.0, found.fit.chi2 - numbers);
   d.share_unexplained = std::min(1.0, left / std::max(left, o.null_residual().squaredNorm() - numbers));
-  d.localised = !instead.empty()
-                    ? instead
-                    : localised(at_places(known, found.effects, found.fit, threads), found.fit.chi2, numbers);
-  d.pattern = pattern_left(found, d.localised, !instead.empty());
+  d.localised = localised(at_places(known, found.effects, found.fit, threads), found.fit.chi2, numbers);
+  d.pattern = pattern_left(found, d.localised.empty() ? instead : d.localised, d.localised.empty());
+  if (d.localised.empty()) d.localised = instead;
   const auto [entry, gain] = nearest_entry(known, found.fit);
   d.nearest = entry;
   d.nearest_share = std::min(1.0, gain / left);
@@ -204,7 +203,9 @@ Explained explained(const FirstStep& s, const Candidates& candidates, const std:
     out.found = std::move(at->there);
     if (!at->instead)
       out.left = left_over(out.patterns, known, out.found.effects, out.found.fit, candidates.threads());
-    else if (!out.left.significant())
+    else if (out.left.significant())
+      out.left.instead = std::move(at->instead->instead);
+    else
       out.left = *at->instead;
   }
   if (!out.left.significant()) out.patterns.reset();

@@ -19,7 +19,7 @@ namespace deflect::diagnosis {
 struct LeftOver {
   double log_evidence = 0;  ///< in favour of something unknown
   double p_value = 1;       ///< chance of as much where only noise and tolerances are left
-  /// The places of an unknown law that stands for all effects (AllAtOnePlace); empty where it is beside them.
+  /// The places of an unknown law that explains more than all effects, if these are there (AllAtOnePlace).
   std::vector<Localised> instead = {};
 
   bool significant() const { return log_evidence > 2 && p_value < least_p; }
