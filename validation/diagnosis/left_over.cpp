@@ -133,12 +133,12 @@ namespace {
 
 /// An unknown law at one place against the effects of a selection and an unknown law beside them.
 struct OnePlace {
-  const subject::Place* place = nullptr;  ///< null where the law is not likelier by what is asked
+  const subject::Place* place = nullptr;  ///< null where there is none
   double left = 0, of = 0;                ///< χ² beside it, and without anything
   LeftOver against = {};                  ///< the effects
 };
 
-OnePlace one_place(const Weighed& all, const Candidates& candidates, const Selection& s, double more) {
+OnePlace one_place(const Weighed& all, const Candidates& candidates, const Selection& s) {
   const Fit null = fit_of_all(s.observations, {}, VectorX(0));
   const std::vector<AtPlace> alone = at_places(all, {}, null, candidates.threads()),
                              beside = at_places(all, s.effects, s.fit, candidates.threads());
@@ -150,7 +150,6 @@ OnePlace one_place(const Weighed& all, const Candidates& candidates, const Selec
   const double found = log_odds_of_all(candidates, s.effects, (null.chi2 - s.fit.chi2) / noise) +
                        (further ? std::max(0.0, further->log_odds(noise)) : 0);
   const double likelier = place->log_odds(noise) - found;
-  if (likelier < more) return {};
   const double beyond = std::max(0.0, gain - (null.chi2 - s.fit.chi2)) / noise;
   const auto freedom = std::max<Eigen::Index>(1, dimension - s.fit.signature.cols());
   return {&place->place(),
@@ -164,7 +163,7 @@ OnePlace one_place(const Weighed& all, const Candidates& candidates, const Selec
 
 std::optional<AllAtOnePlace> at_one_place(const Weighed& all, const Candidates& candidates, const Selection& s,
                                           double more) {
-  const OnePlace one = s.effects.empty() ? OnePlace{} : one_place(all, candidates, s, more);
+  const OnePlace one = s.effects.empty() ? OnePlace{} : one_place(all, candidates, s);
   if (!one.place) return std::nullopt;
   AllAtOnePlace out{s};
   for (std::size_t i = s.effects.size(); i-- > 0;) {
@@ -174,7 +173,9 @@ std::optional<AllAtOnePlace> at_one_place(const Weighed& all, const Candidates& 
     out.there.fit.values = std::move(values);
     if (i < out.there.ties.size()) out.there.ties.erase(out.there.ties.begin() + as_index(i));
   }
-  if (out.there.effects.size() == s.effects.size()) {
+  const bool all_there = out.there.effects.size() == s.effects.size();
+  if (!all_there && one.against.log_evidence < more) return std::nullopt;
+  if (all_there) {
     out.instead = one.against;
     return out.instead->significant() ? std::optional(std::move(out)) : std::nullopt;
   }
@@ -183,8 +184,8 @@ std::optional<AllAtOnePlace> at_one_place(const Weighed& all, const Candidates& 
 }
 
 bool is_all_at_one_place(const Weighed& all, const Candidates& candidates, const Selection& s) {
-  const OnePlace one = one_place(all, candidates, s, clearly_one_place);
-  if (!one.place) return false;
+  const OnePlace one = one_place(all, candidates, s);
+  if (!one.place || one.against.log_evidence < clearly_one_place) return false;
   const bool others =
       std::any_of(s.effects.begin(), s.effects.end(), [&](const auto& e) { return !at_the_same_part(e, *one.place); });
   return one.left < most_by_noise(static_cast<double>(s.observations.numbers())) + (others ? small_rest * one.of : 0);

@@ -43,10 +43,9 @@ struct AllAtOnePlace {
   /// Where all of them are: that law against the effects.
   std::optional<LeftOver> instead = {};
 };
-/// Where an unknown law at one place alone is likelier than all the effects and an unknown law beside them, by `more`
-/// in ln of the odds; nullopt where it is not. Noise counts as large as the better of the two leaves it. Where all
-/// effects are of that place, nullopt as well for a single one, and where the law takes no more off than they do but by
-/// chance.
+/// Where an unknown law at one place alone is likelier than all the effects and an unknown law beside them: by `more`
+/// in ln of the odds where some of these are of another place, else significantly. Nullopt where it is not. Noise
+/// counts as large as the better of the two leaves it.
 std::optional<AllAtOnePlace> at_one_place(const Weighed&, const Candidates&, const Selection&, double more);
 
 /// ln of the odds by which a law at one place must be likelier, where effects alone leave nothing unknown.
