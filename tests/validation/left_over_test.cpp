@@ -253,6 +253,19 @@ TEST(AtOnePlace, StandsForEffectsThatAddUpToIt) {
   ASSERT_EQ(named->there.effects.size(), 1u);
   EXPECT_EQ(named->there.effects[0].effect->name, "a");
   EXPECT_NEAR(named->there.fit.values(0), 20 / r, 0.1);
+  // So does a single one, and the law is said beside it. It takes 800 of what that leaves, 864 in six numbers.
+  const test::springs_apart::Seen more_left =
+      test::springs_apart::seen(20 * (axis(0) + axis(1) + axis(2) + axis(3)) + 8 * axis(4));
+  const Selection alone{more_left.observations,
+                        {{&known[0], {}}},
+                        fit_of_all(more_left.observations, {{&known[0], {}}}, VectorX::Constant(1, 28)),
+                        {},
+                        {}};
+  const std::optional<AllAtOnePlace> beside_it = at_one_place(all, candidates, alone, 0);
+  ASSERT_TRUE(beside_it && beside_it->instead);
+  EXPECT_EQ(beside_it->there.effects.size(), 1u);
+  ASSERT_EQ(beside_it->instead->instead.size(), 1u);
+  EXPECT_NEAR(beside_it->instead->instead.front().share, 800.0 / 858, 0.01);
 }
 
 }  // namespace

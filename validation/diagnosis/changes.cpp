@@ -74,18 +74,18 @@ std::vector<VectorX> shapes(const std::vector<effects::EffectParameter>& all, co
   return out;
 }
 
-/// By how much a load F differs in the base's axes whose point lies elsewhere along an axis of the platform, which is
-/// turned about an axis, or of which one component has another size; 1 m, 1 rad, once its size. R: of the platform.
-std::vector<Vector6> other_loads(const Vector6& F, const Matrix3& R) {
+/// By how much a load F differs, in the base's axes, whose point lies elsewhere along an axis of the platform (columns
+/// 0 to 2, by 1 m), which is turned about an axis of the base (3 to 5, by 1 rad), or of which one component is once
+/// larger (6 to 11). R: axes of the platform.
+Eigen::Matrix<double, 6, 12> other_loads(const Vector6& F, const Matrix3& R) {
   const Vector3 f = F.head<3>(), m = F.tail<3>();
-  std::vector<Vector6> out(12, Vector6::Zero());
+  Eigen::Matrix<double, 6, 12> out = Eigen::Matrix<double, 6, 12>::Zero();
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const Vector3 turn = Vector3::Unit(axis);
-    nth(out, axis).tail<3>() = R.col(axis).cross(f);
-    nth(out, 3 + axis) << turn.cross(f), turn.cross(m);
-    nth(out, 6 + axis)(axis) = f(axis);
-    nth(out, 9 + axis)(3 + axis) = m(axis);
+    out.col(axis).tail<3>() = R.col(axis).cross(f);
+    out.col(3 + axis) << turn.cross(f), turn.cross(m);
   }
+  out.rightCols<6>() = F.asDiagonal();
   return out;
 }
 
@@ -182,12 +182,12 @@ MatrixX Changes::by_any_load_of_a_machine(const subject::Place& place) const {
   };
   const VectorX before = read(*study.data);
   std::vector<MatrixX> out;
-  for (std::size_t kind = 0; kind < 12; ++kind) {
+  for (Eigen::Index kind = 0; kind < 12; ++kind) {
     measurement::Measurements other = *study.data;
     bool same = true;
     for (measurement::Reading& r : other.readings) {
       Vector6& load = !at_tool ? r.at_points[as_size(point - points.begin())] : points.empty() ? r.load : r.at_tool;
-      const Vector6 more = other_loads(load, standing->tool(r.pose).R_W)[kind];
+      const Vector6 more = other_loads(load, standing->tool(r.pose).R_W).col(kind);
       load += hundredth * (kind < 3 ? standing->size() : 1) * more;
       same = same && more.isZero(0);
     }

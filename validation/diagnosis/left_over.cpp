@@ -82,7 +82,7 @@ std::string at_places_alone(const std::vector<Localised>& places, bool instead) 
     sum += l.probability, least = std::min(least, l.share);
     at.push_back(effects::words_of(place));
   }
-  if (sum < nearly_all || least < nearly_all) return "";
+  if (sum < nearly_all || (least < nearly_all && !instead)) return "";
   return fmt::format("an unknown law at one place {}: {}",
                      instead ? "explains more than these do" : fmt::format("takes {:.0f} % of it", 100 * least),
                      fmt::join(at, " or "));
@@ -152,11 +152,16 @@ OnePlace one_place(const Weighed& all, const Candidates& candidates, const Selec
   const double likelier = place->log_odds(noise) - found;
   const double beyond = std::max(0.0, gain - (null.chi2 - s.fit.chi2)) / noise;
   const auto freedom = std::max<Eigen::Index>(1, dimension - s.fit.signature.cols());
+  // The shares are of what the effects leave.
+  const auto numbers = static_cast<double>(s.observations.numbers());
+  std::vector<Localised> instead = localised(alone, null.chi2, numbers);
+  for (Localised& l : instead)
+    l.share = std::clamp(
+        (s.fit.chi2 - null.chi2 + l.share * (null.chi2 - numbers)) / std::max(1.0, s.fit.chi2 - numbers), 0.0, 1.0);
   return {&place->place(),
           null.chi2 - gain,
           null.chi2,
-          {likelier, std::min(1.0, statistics::chi_squared_tail(freedom, beyond) / place->prior),
-           localised(alone, null.chi2, static_cast<double>(s.observations.numbers()))}};
+          {likelier, std::min(1.0, statistics::chi_squared_tail(freedom, beyond) / place->prior), std::move(instead)}};
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ function tiedParts() {
 
 /** Parts in which something unknown may act; those of a machine are marked as such. */
 function suspects() {
-  const places = of('diagnosis').filter((d) => d.unexplained.significant).flatMap((d) => d.unexplained.localised || []).map((l) => l.place);
+  const places = of('diagnosis').filter((d) => d.unexplained?.significant).flatMap((d) => d.unexplained.localised || []).map((l) => l.place);
   if (data.scene.kind === 'frame') return unmarked(places.flatMap(partsOf));
   const all = [...data.scene.bodies, ...data.scene.joints];
   return [...new Set(places.flatMap(({part, leg}) => {
