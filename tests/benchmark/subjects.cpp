@@ -21,6 +21,7 @@
 #include "tests/support/paths.h"
 #include "validation/diagnosis/diagnosis.h"
 #include "validation/diagnosis/interval.h"
+#include "validation/effects/edit_paths.h"
 #include "validation/effects/effect_file.h"
 #include "validation/effects/place_effects.h"
 #include "validation/parallel/pack.h"
@@ -194,14 +195,16 @@ class Examined {
   /// The places told, and those where the hidden effect is or one of its class.
   void count_places(const Diagnosis& d, SubjectSet& out) const {
     const EffectClass& hidden = out.classes.front();
-    const auto tell = [&](const std::string& name, const std::optional<subject::Place>& place) {
+    const auto tell = [&](const std::string& name, const std::optional<subject::Place>& place,
+                          const effects::Effect* entry = nullptr) {
       const auto is_there = [&](const effects::Effect& e) {
-        return place && e.place && holds(hidden, e.name) && within(*place, *e.place);
+        return e.place && holds(hidden, e.name) &&
+               (place ? within(*place, *e.place) : entry && effects::edits_only(*entry, e.place->path, subject_));
       };
       out.told.push_back(name);
       out.told_rightly += holds(hidden, name) || std::any_of(effects_.begin(), effects_.end(), is_there);
     };
-    for (const effects::PlacedEffect& e : d.missing) tell(e.effect->name, e.effect->place);
+    for (const effects::PlacedEffect& e : d.missing) tell(e.effect->name, e.effect->place, e.effect);
     if (d.unexplained)
       for (const Localised& l : d.localised) tell(l.effect ? l.effect->name : l.what, l.place);
   }

@@ -153,8 +153,8 @@ Mechanism with_knees_at_the_elbow(const Mechanism& m) {
 
 // A measured curve with two knees at the elbow of a scara. What the quill's screw and its wrist yield sideways moves
 // the tool as the elbow's turn does, since the fore link between them has one length: the three places cannot be told
-// apart, and nothing else explains as much. A sum of powers of the force leaves a tenth of it, a broken line hardly
-// any.
+// apart, and nothing else explains as much. A sum of powers of the force leaves a tenth of it, a line with six bends in
+// each sense a hundredth, one with bends where the readings ask for them no more than noise.
 TEST(AtOnePlace, ACurveWithKneesIsWhereItActsOrDoesTheSame) {
   const Mechanism m = test::device("scara");
   const measurement::Measurements data = measured_on(with_knees_at_the_elbow(m), "random");
@@ -169,11 +169,40 @@ TEST(AtOnePlace, ACurveWithKneesIsWhereItActsOrDoesTheSame) {
   for (const Localised& l : found) {
     places.insert(subject::id_of(l.place));
     EXPECT_NEAR(l.probability, 1.0 / 3, 0.02) << l.what;
-    EXPECT_GT(l.share, 0.98) << l.what;
+    EXPECT_GT(l.share, 0.999) << l.what;
   }
   EXPECT_EQ(places, (std::set<std::string>{"elbow.rz", "screw.ty", "wrist.ty"}));
-  EXPECT_EQ(pattern_left({o, {}, null, {}, {}}, found, false),
-            "an unknown law at one place takes 99 % of it: screw ty or wrist ty or elbow rz");
+  EXPECT_TRUE(
+      pattern_left({o, {}, null, {}, {}}, found, false).starts_with("an unknown law at one place takes 100 % of it: "));
+}
+
+// A curve with three knees in every motor of a Delta. A line that bends at six sizes of the torque leaves four times
+// the noise, so that a load cell of half the gain beside a spring that stiffens seems to explain as much; a line that
+// bends where the readings ask for it leaves none. What the motors turn, the arms' ends move sideways by one length.
+TEST(AtOnePlace, WhatIsElsewhereIsNotNamedBesideACurveWithKneesInEveryLeg) {
+  const Mechanism m = test::device("delta");
+  const Mechanism real = test::with(m, "leg.motor.rz",
+                                    "{law: table, points: [[0 Nm, 0 mrad], [1 Nm, 0.02 mrad], [1.5 Nm, 0.2 mrad], "
+                                    "[4 Nm, 0.4 mrad], [20 Nm, 1 mrad]]}");
+  const measurement::Measurements data = measured_on(real, "random");
+  const Observations o(m, data, {});
+  const std::vector<Effect> known = all_but("", m);
+  const SignaturesAtPlaces signatures(o, known, 2);
+  const Candidates candidates(signatures.all(), 2);
+  const Hypothesis two = {{&find_effect(known, "hardening@motor.rz"), {}}, {&find_effect(known, "load_gain"), {}}};
+  const Selection found{o, two, fit_of_all(o, two, test::values({3.6e6, 2.7e-4, 0.5})), {}, {}};
+  ASSERT_TRUE(found.fit.found);
+  EXPECT_TRUE(is_all_at_one_place(signatures.known(), candidates, found));
+  const std::optional<AllAtOnePlace> at = at_one_place(signatures.known(), candidates, found, clearly_one_place);
+  ASSERT_TRUE(at);
+  ASSERT_EQ(at->there.effects.size(), 1u);
+  EXPECT_EQ(at->there.effects.front().effect->name, "hardening@motor.rz");
+  std::set<std::string> places;
+  for (const Localised& l : at->instead.instead) {
+    places.insert(subject::id_of(l.place));
+    EXPECT_NEAR(l.probability, 0.5, 0.1) << l.what;
+  }
+  EXPECT_EQ(places, (std::set<std::string>{"arm.end.tz", "motor.rz"}));
 }
 
 // In 27 readings two laws of the elbow explain nearly as much as the curve. They are not all there is, and the
@@ -187,20 +216,40 @@ TEST(AtOnePlace, ACurveInFewReadingsIsNotSurelyTwoLaws) {
   for (const PlacedEffect& e : d.missing) EXPECT_EQ(subject::id_of(*e.effect->place), "elbow.rz") << e.effect->name;
 }
 
+std::string cycloid_folder() { return test::source_dir() + "/validation/measurements/cycloid/"; }
+
+/// Loads as in a record of a cycloidal actuator, readings of one whose drive has play.
+measurement::Measurements of_an_actuator_with_play(const Mechanism& m) {
+  const std::vector<Effect> every = all_but("", m);
+  const subject::Subject hidden =
+      with_effect(subject::Subject(m), {{&find_effect(every, "clearance@drive.rz"), {}}, test::values({5e-4})});
+  prediction::SimulationOptions noise;
+  noise.sigma_th = 6e-5;
+  return prediction::simulate(*hidden.machine(),
+                              measurement::read_measurements(cycloid_folder() + "baseline_play_initial.csv"), noise);
+}
+
+// An entry of the catalogue names no place; it is where all that it edits is.
+TEST(AtOnePlace, AnEntryIsWhereItEdits) {
+  const Mechanism m = read_mechanism(cycloid_folder() + "actuator.yaml");
+  const measurement::Measurements data = of_an_actuator_with_play(m);
+  const Observations o(m, data, {});
+  const std::vector<Effect> known = all_but("clearance@", m);
+  const SignaturesAtPlaces signatures(o, known, 2);
+  const Candidates candidates(signatures.all(), 2);
+  const Hypothesis two = {{&find_effect(known, "motor_compliance"), {}}, {&find_effect(known, "load_gain"), {}}};
+  const std::optional<AllAtOnePlace> at =
+      at_one_place(signatures.known(), candidates, {o, two, fit_of_all(o, two, test::values({1e6, 1.1})), {}, {}}, 0);
+  ASSERT_TRUE(at);
+  ASSERT_EQ(at->there.effects.size(), 1u);
+  EXPECT_EQ(at->there.effects.front().effect->name, "motor_compliance");
+}
+
 // Play of a gear that is not among the candidates. A spring that stiffens and friction that grows with the load add up
 // to nearly the same; they are not named without saying that one unknown law there explains more.
 TEST(AtOnePlace, LawsOfThePlaceThatImitateAnotherAreNotAllThereIs) {
-  const std::string folder = test::source_dir() + "/validation/measurements/cycloid/";
-  const Mechanism m = read_mechanism(folder + "actuator.yaml");
-  const std::vector<Effect> every = all_but("", m);
-  const auto play =
-      std::find_if(every.begin(), every.end(), [](const Effect& e) { return e.name == "clearance@drive.rz"; });
-  ASSERT_NE(play, every.end());
-  const subject::Subject hidden = with_effect(subject::Subject(m), {{&*play, {}}, test::values({5e-4})});
-  prediction::SimulationOptions noise;
-  noise.sigma_th = 6e-5;
-  const measurement::Measurements data = prediction::simulate(
-      *hidden.machine(), measurement::read_measurements(folder + "baseline_play_initial.csv"), noise);
+  const Mechanism m = read_mechanism(cycloid_folder() + "actuator.yaml");
+  const measurement::Measurements data = of_an_actuator_with_play(m);
   const std::vector<Effect> known = all_but("clearance@", m);
   const Diagnosis d = diagnose(subject::Subject(m), data, known);
   EXPECT_EQ(d.verdict, Verdict::unknown_effect);
@@ -236,7 +285,7 @@ TEST(AtOnePlace, StandsForEffectsThatAddUpToIt) {
   EXPECT_FALSE(at_one_place(all, candidates, four, more + 0.1));
   const std::optional<AllAtOnePlace> at = at_one_place(all, candidates, four, more - 0.1);
   ASSERT_TRUE(at);
-  EXPECT_FALSE(at->instead);
+  EXPECT_FALSE(at->all_there);
   EXPECT_TRUE(at->there.effects.empty());
   EXPECT_NEAR(at->there.fit.chi2, 1600, 1);
   // So clear that no further effect is looked for, unless the law leaves more than noise: here 20² of six numbers.
@@ -262,10 +311,10 @@ TEST(AtOnePlace, StandsForEffectsThatAddUpToIt) {
                         {},
                         {}};
   const std::optional<AllAtOnePlace> beside_it = at_one_place(all, candidates, alone, 0);
-  ASSERT_TRUE(beside_it && beside_it->instead);
+  ASSERT_TRUE(beside_it && beside_it->all_there);
   EXPECT_EQ(beside_it->there.effects.size(), 1u);
-  ASSERT_EQ(beside_it->instead->instead.size(), 1u);
-  EXPECT_NEAR(beside_it->instead->instead.front().share, 800.0 / 858, 0.01);
+  ASSERT_EQ(beside_it->instead.instead.size(), 1u);
+  EXPECT_NEAR(beside_it->instead.instead.front().share, 800.0 / 858, 0.01);
 }
 
 }  // namespace

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -21,9 +23,12 @@ namespace {
 
 constexpr double left_of_a_column = 1e-3;  // of a unit column beside the fit: less is rounding
 constexpr double together_told = 0.95;     // probability
-constexpr double share_of_one = 0.2;       // of a place's prior: its laws, two kinds of curve, both beside its laws
-constexpr std::size_t looked_into = 6;     // places: the columns are computed each time
-constexpr double beyond_chance = 30;       // in χ², of a few hundred that are looked at
+constexpr double share_of_one =
+    1.0 / 6;  // of a place's prior: its laws, three kinds of curve, two of them beside its laws too
+constexpr std::size_t looked_into = 6;  // places: the columns are computed each time
+constexpr double beyond_chance = 30;    // in χ², of a few hundred that are looked at
+constexpr double least_of_a_bend = 6;   // in χ², beyond the most of many by chance
+constexpr double nearly_most = 0.9;     // of the gain of the place that gains most
 
 struct LawsAtPlace {
   Spot spot;
@@ -58,15 +63,36 @@ std::vector<LawsAtPlace> laws_by_place(const Explanations& all) {
 
 bool has_curve(const LawsAtPlace& p) { return !p.without && p.laws.front()->any_curve; }
 
-AtPlace::Span span_of(const std::vector<MatrixX>& columns, const VectorX& residual) {
-  if (columns.empty()) return {};
-  const MatrixX span = statistics::orthonormal(statistics::side_by_side(columns, residual.size()), left_of_a_column);
-  return {(span.transpose() * residual).squaredNorm(), static_cast<int>(span.cols())};
+AtPlace::Span explained_within(const MatrixX& orthonormal, const VectorX& residual) {
+  return {(orthonormal.transpose() * residual).squaredNorm(), static_cast<int>(orthonormal.cols())};
 }
 
-/// By all laws at a place; with `curves` by any curve there too, alone and beside the laws.
+AtPlace::Span span_of(const std::vector<MatrixX>& columns, const VectorX& residual) {
+  if (columns.empty()) return {};
+  return explained_within(statistics::orthonormal(statistics::side_by_side(columns, residual.size()), left_of_a_column),
+                          residual);
+}
+
+/// ln of the number of ways to choose so many.
+double log_choices(Eigen::Index of, Eigen::Index chosen) {
+  double out = 0;
+  for (Eigen::Index i = 0; i < chosen; ++i)
+    out += std::log(static_cast<double>(of - i) / static_cast<double>(chosen - i));
+  return out;
+}
+
+/// Of the columns that gain more in turn than the best of them does by chance.
+AtPlace::Span span_of_few(const MatrixX& columns, const VectorX& residual) {
+  const double by_chance = least_of_a_bend + 2 * std::log(static_cast<double>(columns.cols()));
+  const MatrixX few = statistics::chosen_in_turn(columns, residual, by_chance, left_of_a_column);
+  AtPlace::Span out = explained_within(few, residual);
+  out.log_ways = log_choices(columns.cols(), few.cols());
+  return out;
+}
+
+/// By all laws at a place, and by any of the curves there, alone and, but for finer lines, beside the laws.
 AtPlace explained_by(const Weighed& all, const LawsAtPlace& place, const VectorX& residual, const MatrixX& fitted,
-                     bool curves) {
+                     std::span<const Curves> curves) {
   AtPlace out;
   out.without_law = place.without;
   out.prior = (has_curve(place) ? share_of_one : 1) * place.prior;
@@ -91,10 +117,13 @@ AtPlace explained_by(const Weighed& all, const LawsAtPlace& place, const VectorX
   if (whatever) add(whatever());
   out.spans.push_back(span_of(columns, residual));
   const std::vector<MatrixX> laws = std::move(columns);
-  for (const Curves kind : all_curves) {
-    if (!curves) break;
+  for (const Curves kind : curves) {
     columns.clear();
     add(curve(kind));
+    if (kind == Curves::finer_lines && !columns.empty()) {
+      out.spans.push_back(span_of_few(statistics::side_by_side(columns, residual.size()), residual));
+      continue;
+    }
     out.spans.push_back(span_of(columns, residual));
     columns.insert(columns.end(), laws.begin(), laws.end());
     out.spans.push_back(span_of(columns, residual));
@@ -118,6 +147,19 @@ std::vector<std::size_t> worth_any_curve(const std::vector<LawsAtPlace>& places,
   std::stable_sort(others.begin(), others.end(), [&](std::size_t a, std::size_t b) { return gain(a) > gain(b); });
   others.resize(std::min(looked_into, others.size()));
   out.insert(out.end(), others.begin(), others.end());
+  return out;
+}
+
+/// Of those at which curves were tried: the ones that explain nearly as much as any, where that leaves more than noise.
+std::vector<std::size_t> worth_finer_lines(const std::vector<std::size_t>& curved, const std::vector<AtPlace>& places,
+                                           const Fit& fit) {
+  const auto gain = [&](std::size_t i) { return places[i].spans.empty() ? 0 : places[i].most().gain; };
+  double most = 0;
+  for (const std::size_t i : curved) most = std::max(most, gain(i));
+  std::vector<std::size_t> out;
+  if (fit.chi2 - most < most_by_noise(static_cast<double>(fit.residual.size()))) return out;
+  std::copy_if(curved.begin(), curved.end(), std::back_inserter(out),
+               [&](std::size_t i) { return gain(i) > nearly_most * most; });
   return out;
 }
 
@@ -160,11 +202,15 @@ std::vector<AtPlace> at_places(const Weighed& all, const Hypothesis& effects, co
   const std::vector<LawsAtPlace> places = laws_by_place(all.all());
   std::vector<AtPlace> out(places.size());
   parallel::for_each_case(places.size(), 1, threads,
-                          [&](std::size_t i) { out[i] = explained_by(all, places[i], fit.residual, fitted, false); });
+                          [&](std::size_t i) { out[i] = explained_by(all, places[i], fit.residual, fitted, {}); });
+  const auto try_curves = [&](const std::vector<std::size_t>& where, std::span<const Curves> curves) {
+    parallel::for_each_case(where.size(), 1, threads, [&](std::size_t k) {
+      out[where[k]] = explained_by(all, places[where[k]], fit.residual, fitted, curves);
+    });
+  };
   const std::vector<std::size_t> curved = worth_any_curve(places, out, effects);
-  parallel::for_each_case(curved.size(), 1, threads, [&](std::size_t k) {
-    out[curved[k]] = explained_by(all, places[curved[k]], fit.residual, fitted, true);
-  });
+  try_curves(curved, curves_tried_first);
+  try_curves(worth_finer_lines(curved, out, fit), all_curves);
   std::erase_if(out, [](const AtPlace& p) { return p.spans.empty(); });
   return out;
 }
@@ -175,7 +221,7 @@ const AtPlace::Span& AtPlace::most() const {
 
 double AtPlace::log_odds(double noise) const {
   std::vector<double> logs;
-  for (const Span& s : spans) logs.push_back(diagnosis::log_evidence(s.gain / noise, s.dimension, false));
+  for (const Span& s : spans) logs.push_back(diagnosis::log_evidence(s.gain / noise, s.dimension, false) - s.log_ways);
   return std::log(prior) + log_sum_exp(logs);
 }
 
@@ -189,7 +235,7 @@ double p_value(const std::vector<AtPlace>& all) {
   double out = 1;
   for (const AtPlace& p : all)
     for (const AtPlace::Span& s : p.spans)
-      out = std::min(out, statistics::chi_squared_tail(s.dimension, s.gain) / p.prior);
+      out = std::min(out, std::exp(s.log_ways) * statistics::chi_squared_tail(s.dimension, s.gain) / p.prior);
   return out;
 }
 

@@ -3,8 +3,8 @@
 // What is missing at a place may be a law that nobody wrote. The signatures of all laws at the place span what such a
 // law can do to the readings, as a curve drawn by hand is a sum of a few shapes; in a machine any curve of deflection
 // over force is tried as well (whatever_the_law.h), at the places whose laws explain most. With g the reduction of χ²
-// by such a span, beside the fit, and k its dimension, its evidence is log_evidence(g, k) (evidence.h), and that of the
-// place the mean over its spans.
+// by such a span, beside the fit, and k its dimension, its evidence is log_evidence(g, k) (evidence.h), divided by the
+// number of spans from which it was chosen by its gain, and that of the place the mean over its spans.
 //
 // Where the unexplained rest of a misfit acts is told by the same gains. What no place explains makes places harder to
 // tell apart: the gains are divided by s = max(1, χ² left by the best place over the numbers left).
@@ -43,9 +43,12 @@ struct AtPlace {
   const PlaceWithoutLaw* without_law = nullptr;  ///< where there is none
   bool other_way = false;                        ///< physics lets that one act to the other side only
   /// What may explain it: all laws together; where curves are tried, of each kind any curve, alone and beside the laws.
+  /// Of the finer lines, alone, only the few bends that gain much, at the places that explain nearly as much as any,
+  /// where what they leave is more than noise.
   struct Span {
     double gain = 0;  ///< in χ²
     int dimension = 0;
+    double log_ways = 0;  ///< ln of the number of spans from which it was chosen by its gain
   };
   std::vector<Span> spans;
   /// Prior probability of each span. All places share it alike, and the single legs of a place share that of one place.

@@ -21,7 +21,8 @@ constexpr const char* load_at_tool = "rig.load_cell";
 constexpr std::size_t most_apart = 4;     // nodes of a load
 constexpr double no_force = 1e-9;         // of the largest
 constexpr double size_of_a_curve = 1e-3;  // m
-constexpr std::size_t parts_of_a_line = 7;
+constexpr std::size_t parts_of_a_line = 7, parts_of_a_finer_line = 61;
+constexpr std::size_t forces_of_a_part = 10;  // of a finer line, at least
 
 /// A thousandth of the start, where an effect of one parameter is of the first order in it.
 VectorX small_values(const effects::Effect& e) {
@@ -255,13 +256,15 @@ std::vector<subject::Transmissions::Curve> Changes::curves_of(const effects::Pla
   };
   transmissions_->change(*e.effect->place, e.leg, note, *observations_.comparison().study.data);
   std::sort(forces.begin(), forces.end());
+  std::size_t parts = parts_of_a_line;
+  if (kind == Curves::finer_lines) parts = std::min(parts_of_a_finer_line, forces.size() / forces_of_a_part);
+  if (parts < parts_of_a_line || (kind == Curves::finer_lines && parts == parts_of_a_line)) return out;
   out.emplace_back([](double f) { return f == 0 ? 0 : std::copysign(1.0, f); });
   out.emplace_back([](double f) { return f; });
-  for (std::size_t i = 1; i < parts_of_a_line && !forces.empty(); ++i)
+  for (std::size_t i = 1; i < parts && !forces.empty(); ++i)
     for (const double sense : {-1.0, 1.0})
-      out.emplace_back([sense, knee = forces[i * forces.size() / parts_of_a_line]](double f) {
-        return std::max(0.0, sense * f - knee);
-      });
+      out.emplace_back(
+          [sense, knee = forces[i * forces.size() / parts]](double f) { return std::max(0.0, sense * f - knee); });
   return out;
 }
 

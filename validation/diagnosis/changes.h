@@ -29,10 +29,12 @@ struct Change {
 /// Curves of deflection over force f. Contacts, play, springs that harden or soften and one-sided laws are close to
 /// sums of powers; a measured curve, with a knee anywhere, is a broken line.
 enum class Curves {
-  powers,       ///< |f|^p and sign(f)|f|^p, p = 0 (a step, as of play), ½, 1 and 2
-  broken_lines  ///< sign(f), f, and in each sense a bend at six sizes of f between which as many readings lie
+  powers,        ///< |f|^p and sign(f)|f|^p, p = 0 (a step, as of play), ½, 1 and 2
+  broken_lines,  ///< sign(f), f, and in each sense a bend at six sizes of f between which as many readings lie
+  finer_lines    ///< at 60 sizes; fewer where less than ten forces would lie between them, none at six or less
 };
-inline constexpr std::array all_curves = {Curves::powers, Curves::broken_lines};
+inline constexpr std::array curves_tried_first = {Curves::powers, Curves::broken_lines};
+inline constexpr std::array all_curves = {Curves::powers, Curves::broken_lines, Curves::finer_lines};
 
 class Changes {
  public:

@@ -17,14 +17,13 @@
 namespace deflect::diagnosis {
 namespace {
 
-constexpr double alarm = 0.02;          // chance above which nothing is called missing
-constexpr double sure = 0.7;            // probability from which something unknown is there
+constexpr double alarm = 0.02;     // chance above which nothing is called missing
+constexpr double much_left = 0.1;  // of the misfit: an unknown law that explains more is told, and not what they leave
 constexpr double worth_limits = 0.01;   // probability of a candidate
 constexpr double half_of_it = 0.5;      // of what others leave: an effect that leaves more explains too little
 constexpr double even_hopeless = -1e6;  // ln of odds: every candidate is looked into
-constexpr double rather_nothing = 0.5;  // probability from which nothing is called missing
-constexpr double unknown_beside =       // odds of something unknown beside effects, before any reading
-    Candidates::prior_unknown / (1 - Candidates::prior_unknown);
+constexpr double sure = 0.7, rather_nothing = 0.5;  // probabilities: something unknown is there, nothing is missing
+constexpr double unknown_beside = Candidates::prior_unknown / (1 - Candidates::prior_unknown);  // odds
 constexpr int most_rounds = 3;
 constexpr double falls_clearly = 0.75;
 
@@ -50,13 +49,14 @@ void weigh(Diagnosis& d, const LargerTolerances& larger, double unknown, double 
 /// Of what is left unexplained: its size, its pattern, where it acts, the entry that comes nearest.
 void describe_left_over(Diagnosis& d, const Weighed& known, const Selection& found,
                         const std::vector<Localised>& instead, int threads) {
-  const Observations& o = found.observations;
-  const auto numbers = static_cast<double>(o.numbers());
+  const auto numbers = static_cast<double>(found.observations.numbers());
   const double left = std::max(1.0, found.fit.chi2 - numbers);
-  d.share_unexplained = std::min(1.0, left / std::max(left, o.null_residual().squaredNorm() - numbers));
+  d.share_unexplained =
+      std::min(1.0, left / std::max(left, found.observations.null_residual().squaredNorm() - numbers));
   d.localised = localised(at_places(known, found.effects, found.fit, threads), found.fit.chi2, numbers);
-  d.pattern = pattern_left(found, d.localised.empty() ? instead : d.localised, d.localised.empty());
-  if (d.localised.empty()) d.localised = instead;
+  const bool rather = !instead.empty() && (d.localised.empty() || d.share_unexplained > much_left);
+  if (rather) d.localised = instead;
+  d.pattern = pattern_left(found, d.localised, rather);
   const auto [entry, gain] = nearest_entry(known, found.fit);
   d.nearest = entry;
   d.nearest_share = std::min(1.0, gain / left);
@@ -201,12 +201,12 @@ Explained explained(const FirstStep& s, const Candidates& candidates, const std:
   const double more = out.left.significant() ? 0 : clearly_one_place;
   if (std::optional<AllAtOnePlace> at = at_one_place(known, candidates, out.found, more)) {
     out.found = std::move(at->there);
-    if (!at->instead)
+    if (!at->all_there)
       out.left = left_over(out.patterns, known, out.found.effects, out.found.fit, candidates.threads());
-    else if (out.left.significant())
-      out.left.instead = std::move(at->instead->instead);
-    else
-      out.left = *at->instead;
+    if (out.left.significant())
+      out.left.instead = std::move(at->instead.instead);
+    else if (at->all_there)
+      out.left = std::move(at->instead);
   }
   if (!out.left.significant()) out.patterns.reset();
   return out;

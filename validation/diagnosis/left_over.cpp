@@ -8,6 +8,7 @@
 #include "msa/base/index.h"
 #include "validation/compare/findings.h"
 #include "validation/diagnosis/evidence.h"
+#include "validation/effects/edit_paths.h"
 #include "validation/effects/place_effects.h"
 #include "validation/statistics/columns.h"
 #include "validation/statistics/tail.h"
@@ -30,8 +31,12 @@ const AtPlace* likeliest(const std::vector<AtPlace>& places) {
   return out;
 }
 
-bool at_the_same_part(const effects::PlacedEffect& e, const subject::Place& p) {
-  return e.effect->place && subject::of_one_part(*e.effect->place, p);
+/// Entries of the catalogue have no place: they are at the part that they edit. At a load or a sensor what may be wrong
+/// holds all that they do.
+bool at_the_same_part(const effects::PlacedEffect& e, const subject::Place& p, const Observations& o) {
+  if (e.effect->place) return subject::of_one_part(*e.effect->place, p);
+  return p.kind != subject::PlaceKind::load && p.kind != subject::PlaceKind::sensor &&
+         effects::edits_only(*e.effect, p.path, o.subject());
 }
 
 /// Whether an unknown law at another place takes what this effect explains: with the effect and a law at a place the
@@ -40,7 +45,7 @@ bool is_a_law_elsewhere(const effects::PlacedEffect& e, const Selection& with, c
                         const Fit& without, const Weighed& all, const Candidates& candidates) {
   const std::vector<AtPlace> alone = at_places(all, others, without, candidates.threads());
   const AtPlace* place = likeliest(alone);
-  if (!place || at_the_same_part(e, place->place())) return false;
+  if (!place || at_the_same_part(e, place->place(), with.observations)) return false;
   const double more = log_evidence(at_places(all, with.effects, with.fit, candidates.threads())) - log_evidence(alone);
   return candidates.class_log_odds_of(e, std::max(0.0, without.chi2 - with.fit.chi2)) + more < called_for;
 }
@@ -103,8 +108,9 @@ std::pair<std::string, double> nearest_entry(const Weighed& all, const Fit& fit)
 
 std::string pattern_left(const Selection& found, const std::vector<Localised>& places, bool instead) {
   const auto has_effect = [&](const Localised& l) {
-    return std::any_of(found.effects.begin(), found.effects.end(),
-                       [&](const effects::PlacedEffect& e) { return at_the_same_part(e, l.place); });
+    return std::any_of(found.effects.begin(), found.effects.end(), [&](const effects::PlacedEffect& e) {
+      return at_the_same_part(e, l.place, found.observations);
+    });
   };
   if (instead || std::none_of(places.begin(), places.end(), has_effect))
     if (std::string all = at_places_alone(places, instead && !found.effects.empty()); !all.empty()) return all;
@@ -135,7 +141,8 @@ namespace {
 struct OnePlace {
   const subject::Place* place = nullptr;  ///< null where there is none
   double left = 0, of = 0;                ///< χ² beside it, and without anything
-  LeftOver against = {};                  ///< the effects
+  double likelier = 0, p_value = 1;       ///< than the effects and an unknown law beside them
+  std::vector<Localised> places = {};     ///< shares are of all of χ² beyond noise
 };
 
 OnePlace one_place(const Weighed& all, const Candidates& candidates, const Selection& s) {
@@ -144,7 +151,7 @@ OnePlace one_place(const Weighed& all, const Candidates& candidates, const Selec
                              beside = at_places(all, s.effects, s.fit, candidates.threads());
   const AtPlace *place = likeliest(alone), *further = likeliest(beside);
   if (!place) return {};
-  const auto [gain, dimension] = place->most();
+  const auto [gain, dimension, log_ways] = place->most();
   const double left = std::min(null.chi2 - gain, s.fit.chi2 - (further ? further->most().gain : 0));
   const double noise = std::max(1.0, left / std::max(1.0, static_cast<double>(s.observations.numbers())));
   const double found = log_odds_of_all(candidates, s.effects, (null.chi2 - s.fit.chi2) / noise) +
@@ -152,16 +159,20 @@ OnePlace one_place(const Weighed& all, const Candidates& candidates, const Selec
   const double likelier = place->log_odds(noise) - found;
   const double beyond = std::max(0.0, gain - (null.chi2 - s.fit.chi2)) / noise;
   const auto freedom = std::max<Eigen::Index>(1, dimension - s.fit.signature.cols());
-  // The shares are of what the effects leave.
-  const auto numbers = static_cast<double>(s.observations.numbers());
-  std::vector<Localised> instead = localised(alone, null.chi2, numbers);
-  for (Localised& l : instead)
-    l.share = std::clamp(
-        (s.fit.chi2 - null.chi2 + l.share * (null.chi2 - numbers)) / std::max(1.0, s.fit.chi2 - numbers), 0.0, 1.0);
+  const double p_value = std::exp(log_ways) * statistics::chi_squared_tail(freedom, beyond) / place->prior;
   return {&place->place(),
           null.chi2 - gain,
           null.chi2,
-          {likelier, std::min(1.0, statistics::chi_squared_tail(freedom, beyond) / place->prior), std::move(instead)}};
+          likelier,
+          std::min(1.0, p_value),
+          localised(alone, null.chi2, static_cast<double>(s.observations.numbers()))};
+}
+
+/// As shares of what effects with that χ² leave.
+std::vector<Localised> beside_these(std::vector<Localised> places, double null, double left, double numbers) {
+  for (Localised& l : places)
+    l.share = std::clamp((left - null + l.share * (null - numbers)) / std::max(1.0, left - numbers), 0.0, 1.0);
+  return places;
 }
 
 }  // namespace
@@ -170,29 +181,28 @@ std::optional<AllAtOnePlace> at_one_place(const Weighed& all, const Candidates& 
                                           double more) {
   const OnePlace one = s.effects.empty() ? OnePlace{} : one_place(all, candidates, s);
   if (!one.place) return std::nullopt;
-  AllAtOnePlace out{s};
+  AllAtOnePlace out{s, {one.likelier, one.p_value}};
   for (std::size_t i = s.effects.size(); i-- > 0;) {
-    if (at_the_same_part(s.effects[i], *one.place)) continue;
+    if (at_the_same_part(s.effects[i], *one.place, s.observations)) continue;
     auto [others, values] = without(out.there.effects, out.there.fit.values, i);
     out.there.effects = std::move(others);
     out.there.fit.values = std::move(values);
     if (i < out.there.ties.size()) out.there.ties.erase(out.there.ties.begin() + as_index(i));
   }
-  const bool all_there = out.there.effects.size() == s.effects.size();
-  if (!all_there && one.against.log_evidence < more) return std::nullopt;
-  if (all_there) {
-    out.instead = one.against;
-    return out.instead->significant() ? std::optional(std::move(out)) : std::nullopt;
-  }
-  out.there.fit = fit_of_all(s.observations, out.there.effects, out.there.fit.values);
-  return out.there.fit.found ? std::optional(std::move(out)) : std::nullopt;
+  out.all_there = out.there.effects.size() == s.effects.size();
+  if (out.all_there ? !out.instead.significant() : one.likelier < more) return std::nullopt;
+  if (!out.all_there) out.there.fit = fit_of_all(s.observations, out.there.effects, out.there.fit.values);
+  if (!out.there.fit.found) return std::nullopt;
+  out.instead.instead =
+      beside_these(one.places, one.of, out.there.fit.chi2, static_cast<double>(s.observations.numbers()));
+  return out;
 }
 
 bool is_all_at_one_place(const Weighed& all, const Candidates& candidates, const Selection& s) {
   const OnePlace one = one_place(all, candidates, s);
-  if (!one.place || one.against.log_evidence < clearly_one_place) return false;
-  const bool others =
-      std::any_of(s.effects.begin(), s.effects.end(), [&](const auto& e) { return !at_the_same_part(e, *one.place); });
+  if (!one.place || one.likelier < clearly_one_place) return false;
+  const bool others = std::any_of(s.effects.begin(), s.effects.end(),
+                                  [&](const auto& e) { return !at_the_same_part(e, *one.place, s.observations); });
   return one.left < most_by_noise(static_cast<double>(s.observations.numbers())) + (others ? small_rest * one.of : 0);
 }
 

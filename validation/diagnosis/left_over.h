@@ -39,9 +39,9 @@ std::string pattern_left(const Selection&, const std::vector<Localised>&, bool i
 
 /// Several effects can add up to what one law does that none of them is.
 struct AllAtOnePlace {
-  Selection there;  ///< the effects that are of that place, fitted anew
-  /// Where all of them are: that law against the effects.
-  std::optional<LeftOver> instead = {};
+  Selection there;        ///< the effects that are of that place, fitted anew
+  LeftOver instead;       ///< that law against all the effects; its shares are of what those of that place leave
+  bool all_there = true;  ///< whether all of them are
 };
 /// Where an unknown law at one place alone is likelier than all the effects and an unknown law beside them: by `more`
 /// in ln of the odds where some of these are of another place, else significantly. Nullopt where it is not. Noise

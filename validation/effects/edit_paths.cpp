@@ -239,6 +239,17 @@ std::vector<std::string> paths_of(const EffectEdit& edit, const subject::Subject
   return s.frame() ? paths_of(edit, *s.frame()) : paths_of(edit, *s.machine(), std::nullopt);
 }
 
+bool edits_only(const Effect& e, const std::string& part, const subject::Subject& s) {
+  const auto is_within = [&](std::string path) {
+    if (const std::size_t leg = path.find('['); path.starts_with("leg[")) path.erase(leg, path.find(']') + 1 - leg);
+    return path == part || path.starts_with(part + '.');
+  };
+  return std::all_of(e.edits.begin(), e.edits.end(), [&](const EffectEdit& edit) {
+    const std::vector<std::string> paths = paths_of(edit, s);
+    return std::all_of(paths.begin(), paths.end(), is_within);
+  });
+}
+
 std::vector<std::string> paths_of(const EffectEdit& edit, const Mechanism& m, std::optional<int> leg) {
   return in_varied_legs_too(first_alternative(edit, m, leg), m);
 }

@@ -19,5 +19,7 @@ std::vector<std::string> paths_of(const EffectEdit&, const Mechanism&, std::opti
 std::vector<std::string> paths_of(const EffectEdit&, const frame::FrameDescription&);
 /// Of either; every leg where it has legs.
 std::vector<std::string> paths_of(const EffectEdit&, const subject::Subject&);
+/// Whether all that the effect edits is within the part with that path ("leg.drive"), in every leg that has it.
+bool edits_only(const Effect&, const std::string& part, const subject::Subject&);
 
 }  // namespace deflect::effects

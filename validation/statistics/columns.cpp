@@ -35,4 +35,25 @@ MatrixX orthonormal(const MatrixX& X, double threshold) {
   return out;
 }
 
+MatrixX chosen_in_turn(MatrixX columns, VectorX explained, double least, double threshold) {
+  MatrixX out(columns.rows(), 0);
+  while (out.cols() < columns.cols()) {
+    Eigen::Index best = -1;
+    double most = least;
+    for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+      const double length = columns.col(i).norm();
+      if (length <= threshold) continue;
+      const double along = columns.col(i).dot(explained) / length;
+      if (along * along > most) most = along * along, best = i;
+    }
+    if (best < 0) break;
+    const VectorX direction = columns.col(best).normalized();
+    out.conservativeResize(Eigen::NoChange, out.cols() + 1);
+    out.rightCols(1) = direction;
+    explained -= direction * direction.dot(explained);
+    columns -= direction * (direction.transpose() * columns).eval();
+  }
+  return out;
+}
+
 }  // namespace deflect::statistics
