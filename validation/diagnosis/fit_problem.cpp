@@ -110,13 +110,16 @@ VectorX FreeResidual::all(const VectorX& x) const {
   return out;
 }
 
-int FreeResidual::operator()(const VectorX& x, VectorX& r) const {
-  r = problem->residual_or_wall(all(x));
+int FreeResidual::operator()(const VectorX& x, VectorX& r) {
+  if (last.r.size() == 0 || x != last.x) last = {x, problem->residual_or_wall(all(x))};
+  r = last.r;
   return 0;
 }
 
-int FreeResidual::df(const VectorX& x, MatrixX& J) const {
-  const VectorX from = all(x), here = problem->residual_or_wall(from);
+int FreeResidual::df(const VectorX& x, MatrixX& J) {
+  const VectorX from = all(x);
+  VectorX here;
+  operator()(x, here);
   J = MatrixX::Zero(problem->rows(), std::ssize(free));
   for (Eigen::Index i = 0; i < J.cols(); ++i) {
     // Towards the inside where a bound is near, else away from what cannot be predicted.
@@ -143,9 +146,8 @@ int FreeResidual::df(const VectorX& x, MatrixX& J) const {
   return 0;
 }
 
-VectorX minimised(const FreeResidual& f, VectorX x, int evaluations) {
-  FreeResidual free = f;
-  Eigen::LevenbergMarquardt<FreeResidual> search(free);
+VectorX minimised(FreeResidual f, VectorX x, int evaluations) {
+  Eigen::LevenbergMarquardt<FreeResidual> search(f);
   search.parameters.maxfev = evaluations;
   search.parameters.ftol = 1e-5;  // of χ²: far below what one unit of it means
   search.parameters.xtol = 1e-5;

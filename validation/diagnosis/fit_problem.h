@@ -73,12 +73,18 @@ struct FreeResidual {
   VectorX all(const VectorX& x) const;
   int inputs() const { return static_cast<int>(free.size()); }
   int values() const { return static_cast<int>(problem->rows()); }
-  int operator()(const VectorX& x, VectorX& r) const;
-  int df(const VectorX& x, MatrixX& J) const;
+  int operator()(const VectorX& x, VectorX& r);
+  int df(const VectorX& x, MatrixX& J);
+
+  /// Where it was evaluated last: a search asks for the derivative there.
+  struct Point {
+    VectorX x, r;
+  };
+  Point last = {};
 };
 
 /// Levenberg–Marquardt with so many evaluations at most.
-VectorX minimised(const FreeResidual&, VectorX x, int evaluations);
+VectorX minimised(FreeResidual, VectorX x, int evaluations);
 
 /// A value of the last effect's one parameter, and χ² with it.
 struct SizedEffect {

@@ -186,22 +186,19 @@ Start nearer(const FitProblem& problem, Start start, int evaluations) {
 }
 
 Fit search_from(const FitProblem& problem, const Start& start) {
+  const VectorX best = start.x.size() > 0 ? nearer(problem, start, all_steps).x : start.x;
+  FreeResidual all = of_all(problem, best);
   Fit out;
-  VectorX best = start.x;
-  std::optional<VectorX> residual;
+  out.values = problem.values(best);
+  all(best, out.residual);
+  all.df(best, out.signature);
+  out.chi2 = out.residual.squaredNorm();
   if (best.size() > 0) {
-    best = nearer(problem, start, all_steps).x;
-    residual = problem.residual(best);
-    of_all(problem, best).df(best, out.signature);
     // What the data say nothing of is left open by far more than its bounds: a step of size 1 is a large one.
     constexpr double next_to_nothing = 1e-8;
     const MatrixX information = out.signature.transpose() * out.signature;
     out.covariance = (information + next_to_nothing * MatrixX::Identity(best.size(), best.size())).inverse();
   }
-  out.values = problem.values(best);
-  out.residual = residual ? *residual : problem.residual_or_wall(best);
-  if (best.size() == 0) out.signature.resize(out.residual.size(), 0);
-  out.chi2 = out.residual.squaredNorm();
   out.found = true;
   return out;
 }
