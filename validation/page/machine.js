@@ -216,7 +216,7 @@ function legendOf(scene3d, state, guilt, residuals, forces) {
   const shape = scene3d.poses[state.pose].shapes[state.shape];
   return [
     scene3d.guilty.length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--guilty)'}}), guilt + ': ' + shorten(scene3d.guilty)) : null,
-    (scene3d.tied || []).length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--purple)'}}), (scene3d.tiedWords || 'As likely here') + ': ' + shorten(scene3d.tied)) : null,
+    (scene3d.tied || []).length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--purple)'}}), (scene3d.tiedWords || 'As likely here') + ': ' + shorten(scene3d.tiedNames || scene3d.tied)) : null,
     el('div', {}, `Thin lines: unloaded; solid: deflection × ${num(state.scale, 3)}`),
     (scene3d.sensors || []).length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--blue)'}}), 'sensors') : null,
     shape && shape.arrows.length ? el('div', {}, el('span', {class: 'swatch', style: {background: 'var(--text)'}}), scene3d.kind === 'frame' ? 'loads' : 'load on the tool') : null,

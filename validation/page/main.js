@@ -60,24 +60,29 @@ function tiedParts() {
   return unmarked(rivals.flatMap((e) => partsOf(e.place)));
 }
 
-/** Parts in which something unknown may act; those of a machine are marked as such. */
+/** Parts in which something unknown may act, and those of them that no effect marks; of a machine these are marked. */
 function suspects() {
   const places = of('diagnosis').filter((d) => d.unexplained?.significant).flatMap((d) => d.unexplained.localised || []).map((l) => l.place);
-  if (data.scene.kind === 'frame') return unmarked(places.flatMap(partsOf));
-  const all = [...data.scene.bodies, ...data.scene.joints];
-  return [...new Set(places.flatMap(({part, leg}) => {
+  if (data.scene.kind === 'frame') return {all: [...new Set(places.flatMap(partsOf))], free: unmarked(places.flatMap(partsOf))};
+  const parts = [...data.scene.bodies, ...data.scene.joints], all = new Set(), free = new Set();
+  for (const {part, leg} of places) {
     const [, name, end] = part.match(/^(.*?)(?:\.(start|end))?$/);
-    const found = all.filter((each) => !each.guilty && (name === each.part || name.endsWith('.' + each.part)) && (!leg || each.leg === `leg ${leg}`));
-    if (end && !leg) return found.map((each) => `${end} of ${each.part}`);
-    for (const each of found) each.tied = true;
-    return found.map((each) => (leg ? `leg ${leg} ` : '') + each.part);
-  }))];
+    for (const each of parts.filter((p) => (name === p.part || name.endsWith('.' + p.part)) && (!leg || p.leg === `leg ${leg}`))) {
+      const ofMember = end && !leg;
+      const words = ofMember ? `${end} of ${each.part}` : (leg ? `leg ${leg} ` : '') + each.part;
+      all.add(words);
+      if (each.guilty) continue;
+      free.add(words);
+      if (!ofMember) each.tied = true;
+    }
+  }
+  return {all: [...all], free: [...free]};
 }
 
 function machineFigure() {
   const unknown = suspects();
-  data.scene.tied = unknown.length ? unknown : data.scene.kind === 'frame' ? tiedParts() : [];
-  if (unknown.length) data.scene.tiedWords = unknown.length > 1 ? 'Something unknown acts at one of these' : 'Something unknown acts here';
+  data.scene.tied = unknown.free.length ? unknown.free : data.scene.kind === 'frame' ? tiedParts() : [];
+  if (unknown.free.length) Object.assign(data.scene, {tiedWords: unknown.all.length > 1 ? 'Something unknown acts at one of these' : 'Something unknown acts here', tiedNames: unknown.all});
   for (const foot of data.scene.kind === 'frame' ? data.scene.ground : []) foot.tied = data.scene.tied.includes(foot.name);
   if (data.scene.kind === 'frame' && data.versions.length) return figure('machine', 'The frame under its loads', 'Drag to turn, scroll or pinch to zoom. Arrows with names: sensors.', attempt('The frame', () => machine(data.scene, data.versions[0], guilt())));
   if (data.scene.kind === 'frame') return figure('machine', 'The frame under its loads', 'Drag to turn, scroll or pinch to zoom.', attempt('The frame', () => machine(data.scene, null, '')));
