@@ -8,7 +8,10 @@
 #include "msa/mechanism/numbers.h"
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
+#include "tests/support/paths.h"
+#include "tests/support/program.h"
 #include "tests/support/same_mechanism.h"
+#include "validation/effects/edit_paths.h"
 #include "validation/effects/place_effects.h"
 
 namespace deflect {
@@ -332,6 +335,20 @@ TEST(PreparedEffects, AreForModelsAndStandAtEveryPose) {
     EXPECT_EQ(std::get<PlacedMember>(quick.legs[leg].parts[1]).section.Iy,
               std::get<PlacedMember>(slow.legs[leg].parts[1]).section.Iy);
   EXPECT_THROW(write_mechanism(with), std::logic_error);
+}
+
+// An entry edits the actuator of all legs alike and, where one leg has an actuator of its own, that one by its number.
+TEST(EditsOnly, APartInEveryLegThatHasIt) {
+  const std::string file =
+      test::contents(test::source_dir() + "/validation/devices/haptic-6psu-ideal-joints.yaml") +
+      "\nvariations:\n  - {leg: 4, path: actuator, value: {joint: prismatic, at: A, axes: guide}}\n";
+  const subject::Subject s(parse_mechanism(file, "varied.yaml"));
+  const Effect e = find_effect(test::all_effects(), "actuator_compliance");
+  const std::vector<std::string> paths = paths_of(e.edits.front(), s);
+  ASSERT_NE(std::find(paths.begin(), paths.end(), "leg[4].actuator.tz"), paths.end());
+  EXPECT_TRUE(edits_only(e, "leg.actuator", s));
+  EXPECT_FALSE(edits_only(e, "leg.act", s));
+  EXPECT_FALSE(edits_only(e, "leg.guideway", s));
 }
 
 /// A walk over the numbers of a description changes nothing else in it: not where a member begins.

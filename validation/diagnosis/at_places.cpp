@@ -23,12 +23,11 @@ namespace {
 
 constexpr double left_of_a_column = 1e-3;  // of a unit column beside the fit: less is rounding
 constexpr double together_told = 0.95;     // probability
-constexpr double share_of_one =
-    1.0 / 6;  // of a place's prior: its laws, three kinds of curve, two of them beside its laws too
-constexpr std::size_t looked_into = 6;  // places: the columns are computed each time
-constexpr double beyond_chance = 30;    // in χ², of a few hundred that are looked at
-constexpr double least_of_a_bend = 6;   // in χ², beyond the most of many by chance
-constexpr double nearly_most = 0.9;     // of the gain of the place that gains most
+constexpr double share_of_one = 1.0 / 6;   // of a place's prior: its laws, three kinds of curve, two beside its laws
+constexpr std::size_t looked_into = 6;     // places: the columns are computed each time
+constexpr double beyond_chance = 30;       // in χ², of a few hundred that are looked at
+constexpr double least_of_a_bend = 6;      // in χ², beyond the most of many by chance
+constexpr double nearly_most = 0.9;        // of the gain of the place that gains most
 
 struct LawsAtPlace {
   Spot spot;

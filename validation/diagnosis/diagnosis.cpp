@@ -51,10 +51,10 @@ void describe_left_over(Diagnosis& d, const Weighed& known, const Selection& fou
                         const std::vector<Localised>& instead, int threads) {
   const auto numbers = static_cast<double>(found.observations.numbers());
   const double left = std::max(1.0, found.fit.chi2 - numbers);
-  d.share_unexplained =
-      std::min(1.0, left / std::max(left, found.observations.null_residual().squaredNorm() - numbers));
+  d.share_unexplained = left / std::max(left, found.observations.null_residual().squaredNorm() - numbers);
   d.localised = localised(at_places(known, found.effects, found.fit, threads), found.fit.chi2, numbers);
-  const bool rather = !instead.empty() && (d.localised.empty() || d.share_unexplained > much_left);
+  const bool of_these = !instead.empty() && !found.effects.empty();
+  const bool rather = of_these && (d.localised.empty() || d.share_unexplained > much_left);
   if (rather) d.localised = instead;
   d.pattern = pattern_left(found, d.localised, rather);
   const auto [entry, gain] = nearest_entry(known, found.fit);
