@@ -204,6 +204,14 @@ Vector6 Chain::deflection(const Vector6& F, const ChainConditions& c, bool* conv
   return d;
 }
 
+VectorX Chain::passive_motions(const Vector6& F, const Vector6& t, const ChainConditions& under) const {
+  if (J_q.cols() == 0) return {};
+  Vector6 weights = Vector6::Ones();
+  weights.tail<3>().setConstant(length);
+  const MatrixX J = weights.asDiagonal() * J_q;
+  return J.completeOrthogonalDecomposition().solve(weights.cwiseProduct(t - deflection(F, under)));
+}
+
 Matrix6 Chain::stiffness(const Vector6& F, const ChainConditions& c) const {
   return analytic::stiffness(respond(F, 0, c).tangent, length, name);
 }

@@ -74,6 +74,9 @@ struct Chain {
   ChainResponse respond(const Vector6& F, double least, const ChainConditions&) const;
   /// `converged` is set to false where an inner group did not converge.
   Vector6 deflection(const Vector6& F, const ChainConditions&, bool* converged = nullptr) const;
+  /// Motions θ of the passive joints, as the columns of J_q, when the far end moves by t relative to the near one under
+  /// F: J_q θ = t − d, the least ones.
+  VectorX passive_motions(const Vector6& F, const Vector6& t, const ChainConditions&) const;
   /// Tangent stiffness K_c. Contacts without load have no stiffness. Throws ModelError where it is infinite.
   Matrix6 stiffness(const Vector6& F, const ChainConditions&) const;
   Resistance resistance(const Vector6& F, const ChainConditions&) const;

@@ -1,5 +1,4 @@
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 
 #include "analytic/deformed.h"
@@ -44,21 +43,12 @@ Begin begin_of(const Chain& chain, const PlacedLeg& leg, std::size_t parts) {
   return out;
 }
 
-/// Motions of the passive joints of a chain whose end moves by t relative to its start: J_q θ = t − d(F).
-VectorX passive_motions(const Chain& chain, const Vector6& F, const Vector6& t, const ChainConditions& under) {
-  if (chain.J_q.cols() == 0) return {};
-  Vector6 weights = Vector6::Ones();
-  weights.tail<3>().setConstant(chain.length);
-  const MatrixX J = weights.asDiagonal() * chain.J_q;
-  return J.completeOrthogonalDecomposition().solve(weights.cwiseProduct(t - chain.deflection(F, under)));
-}
-
 /// Motion at T, relative to the start of the chain, of the body behind the part; t: of the chain's end.
 Vector6 motion_in(const Chain& chain, const PlacedLeg& leg, const Vector6& F, const Vector6& t, const Inside& at,
                   std::size_t depth, const ChainConditions& under) {
   const std::size_t k = at.parts[2 * depth];
   const bool within = 2 * depth + 1 < at.parts.size();
-  const VectorX passive = passive_motions(chain, F, t, under);
+  const VectorX passive = chain.passive_motions(F, t, under);
   const auto moved = [&](const Begin& first) {
     Vector6 d = first.yields.deflection(F, under);
     if (first.passive > 0) d += chain.J_q.leftCols(first.passive) * passive.head(first.passive);

@@ -23,6 +23,12 @@ using namespace parallel;
 using namespace prediction;
 using namespace subject;
 
+VectorX joined(const std::vector<VectorX>& readings) {
+  VectorX out(6 * std::ssize(readings));
+  for (std::size_t i = 0; i < readings.size(); ++i) out.segment<6>(6 * as_index(i)) = readings[i].head<6>();
+  return out;
+}
+
 class StaticsAtPlaces : public testing::TestWithParam<const char*> {};
 
 // A spring of compliance ε at a place moves the point by ε g gᵀF to first order in ε, in determinate and in
@@ -57,6 +63,64 @@ TEST_P(StaticsAtPlaces, AgreesWithThePredictionOfASmallSpring) {
     ++looked_at;
   }
   EXPECT_GT(looked_at, 10);
+}
+
+/// Jenkins's element of unit stiffness, which slips after r.
+Transmissions::Curve slipping_after(double r) {
+  return [r, slip = 0.0](double x) mutable {
+    slip = std::min(std::max(slip, x - r), x + r);
+    return x - slip;
+  };
+}
+
+/// How far a change is from a multiple of another, as a share of it.
+double apart(const VectorX& change, const VectorX& shape) {
+  return (change - change.dot(shape) / shape.squaredNorm() * shape).norm() / change.norm();
+}
+
+// Friction beside a joint moves the point by its force times the motion of the joint under a unit load (Maxwell), to
+// first order in its stiffness. The haptic device's contacts bend its motions, which are not told.
+TEST_P(StaticsAtPlaces, AgreesWithThePredictionOfALittleFriction) {
+  const Mechanism m = test::device(GetParam());
+  const Measurements data = one_pose(campaign("cycle", m, 50, 3), 0);
+  const Subject subject = m;
+  const auto standing = subject.stand(data);
+  const auto transmissions = standing->transmissions();
+  ASSERT_TRUE(transmissions);
+  PredictionOptions linear;
+  linear.geometry = Geometry::linear;
+  const auto predicted = [&](const Subject& s) { return joined(s.stand(data)->predict(data, linear, alone)); };
+  const VectorX drawn = predicted(subject);
+  int looked_at = 0;
+  for (const Effect& e : place_effects(subject, test::all_effects())) {
+    if (!e.name.starts_with("friction@") || !e.place->others.empty()) continue;
+    const std::optional<int> leg = e.scope == Scope::one_leg ? std::optional(2) : std::nullopt;
+    const auto told = [&](const std::function<Transmissions::Curve()>& at_rest) {
+      const auto out = transmissions->change_beside(*e.place, leg, at_rest, data);
+      return out ? joined({out->begin(), out->end()}) : VectorX(0);
+    };
+    double most = 0;
+    const VectorX sticks = told([&] {
+      return [&most](double x) {
+        most = std::max(most, std::abs(x));
+        return x;
+      };
+    });
+    if (e.place->hold != Hold::free || most < 1e-12) continue;
+    VectorX values = start_values(e);
+    values(1) *= 1e-4;
+    const double per = e.place->rotation() ? 1e-3 : 1e3;  // Nm/rad of Nmm/rad, N/m of N/mm
+    const double unit = e.place->rotation() ? 1e-3 : 1;   // Nm of Nmm
+    values(0) = 0.3 * most * values(1) * per / unit;
+    const VectorX change = predicted(Subject(with_effect(m, e, values, leg))) - drawn,
+                  shape = told([&] { return slipping_after(0.3 * most); });
+    if (change.norm() <= 1e-9 * drawn.norm()) continue;
+    EXPECT_LE(apart(change, shape), 1e-2) << e.name;
+    EXPECT_NEAR(change.dot(shape) / shape.squaredNorm(), -values(1) * per, 2e-2 * values(1) * per) << e.name;
+    ++looked_at;
+  }
+  const std::string device = GetParam();
+  EXPECT_EQ(looked_at > 0, device != "haptic-6psu" && device != "arm" && device != "scara");  // no free joint
 }
 
 INSTANTIATE_TEST_SUITE_P(BuiltIn, StaticsAtPlaces,

@@ -23,7 +23,6 @@ namespace {
 
 constexpr double left_of_a_column = 1e-3;  // of a unit column beside the fit: less is rounding
 constexpr double together_told = 0.95;     // probability
-constexpr double share_of_one = 1.0 / 6;   // of a place's prior: its laws, three kinds of curve, two beside its laws
 constexpr std::size_t looked_into = 6;     // places: the columns are computed each time
 constexpr double beyond_chance = 30;       // in χ², of a few hundred that are looked at
 constexpr double least_of_a_bend = 6;      // in χ², beyond the most of many by chance
@@ -61,6 +60,11 @@ std::vector<LawsAtPlace> laws_by_place(const Explanations& all) {
 }
 
 bool has_curve(const LawsAtPlace& p) { return !p.without && p.laws.front()->any_curve; }
+bool has_friction(const LawsAtPlace& p) { return !p.without && p.laws.front()->any_friction; }
+
+/// How many may explain it: its laws; three kinds of curve, two of them beside its laws; frictions, and they beside its
+/// laws. They share its prior.
+int spans_of(const LawsAtPlace& p) { return 1 + (has_curve(p) ? 5 : 0) + (has_friction(p) ? 2 : 0); }
 
 AtPlace::Span explained_within(const MatrixX& orthonormal, const VectorX& residual) {
   return {(orthonormal.transpose() * residual).squaredNorm(), static_cast<int>(orthonormal.cols())};
@@ -89,16 +93,18 @@ AtPlace::Span span_of_few(const MatrixX& columns, const VectorX& residual) {
   return out;
 }
 
-/// By all laws at a place, and by any of the curves there, alone and, but for finer lines, beside the laws.
+/// By all laws at a place, by any friction and by any of the curves there, alone and, but for finer lines, beside the
+/// laws.
 AtPlace explained_by(const Weighed& all, const LawsAtPlace& place, const VectorX& residual, const MatrixX& fitted,
                      std::span<const Curves> curves) {
   AtPlace out;
   out.without_law = place.without;
-  out.prior = (has_curve(place) ? share_of_one : 1) * place.prior;
+  out.prior = place.prior / spans_of(place);
   double most = -1;
   std::vector<MatrixX> columns;
   Columns whatever = place.without ? all.whatever(*place.without) : nullptr;
   AnyCurve curve = nullptr;
+  Columns friction = nullptr;
   const auto add = [&](const MatrixX& basis) {
     const MatrixX beside = basis - fitted * (fitted.transpose() * basis);
     for (const auto column : beside.colwise())
@@ -107,7 +113,9 @@ AtPlace explained_by(const Weighed& all, const LawsAtPlace& place, const VectorX
   for (const Signature* s : place.laws) {
     const Signature law = all.law(*s);
     add(law.basis);
-    if (s == place.laws.front()) whatever = law.whatever_the_law, curve = law.any_curve;
+    if (s == place.laws.front()) {
+      whatever = law.whatever_the_law, curve = law.any_curve, friction = law.any_friction;
+    }
     const double gain = most_gain(law, residual, fitted);
     if (gain <= most) continue;
     most = gain, out.best = s;
@@ -116,16 +124,23 @@ AtPlace explained_by(const Weighed& all, const LawsAtPlace& place, const VectorX
   if (whatever) add(whatever());
   out.spans.push_back(span_of(columns, residual));
   const std::vector<MatrixX> laws = std::move(columns);
-  for (const Curves kind : curves) {
+  const auto alone_and_beside = [&](const MatrixX& basis) {
     columns.clear();
-    add(curve(kind));
-    if (kind == Curves::finer_lines && !columns.empty()) {
-      out.spans.push_back(span_of_few(statistics::side_by_side(columns, residual.size()), residual));
-      continue;
-    }
+    add(basis);
     out.spans.push_back(span_of(columns, residual));
     columns.insert(columns.end(), laws.begin(), laws.end());
     out.spans.push_back(span_of(columns, residual));
+  };
+  if (friction) alone_and_beside(friction());
+  for (const Curves kind : curves) {
+    if (kind != Curves::finer_lines) {
+      alone_and_beside(curve(kind));
+      continue;
+    }
+    columns.clear();
+    add(curve(kind));
+    if (!columns.empty())
+      out.spans.push_back(span_of_few(statistics::side_by_side(columns, residual.size()), residual));
   }
   std::erase_if(out.spans, [](const AtPlace::Span& s) { return s.dimension == 0; });
   return out;

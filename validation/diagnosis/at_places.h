@@ -1,10 +1,10 @@
 // What the laws at each place could take off a residual together.
 //
 // What is missing at a place may be a law that nobody wrote. The signatures of all laws at the place span what such a
-// law can do to the readings, as a curve drawn by hand is a sum of a few shapes; in a machine any curve of deflection
-// over force is tried as well (whatever_the_law.h), at the places whose laws explain most. With g the reduction of χ²
-// by such a span, beside the fit, and k its dimension, its evidence is log_evidence(g, k) (evidence.h), divided by the
-// number of spans from which it was chosen by its gain, and that of the place the mean over its spans.
+// law can do to the readings, as a curve drawn by hand is a sum of a few shapes; in a machine any friction is tried as
+// well, and any curve of deflection over force at the places whose laws explain most (whatever_the_law.h). With g the
+// reduction of χ² by such a span, beside the fit, and k its dimension, its evidence is log_evidence(g, k) (evidence.h),
+// divided by the number of spans from which it was chosen by its gain, and that of the place the mean over its spans.
 //
 // Where the unexplained rest of a misfit acts is told by the same gains. What no place explains makes places harder to
 // tell apart: the gains are divided by s = max(1, χ² left by the best place over the numbers left).
@@ -42,7 +42,8 @@ struct AtPlace {
   const Signature* best = nullptr;  ///< of the laws at the place the one that explains most; null without any
   const PlaceWithoutLaw* without_law = nullptr;  ///< where there is none
   bool other_way = false;                        ///< physics lets that one act to the other side only
-  /// What may explain it: all laws together; where curves are tried, of each kind any curve, alone and beside the laws.
+  /// What may explain it: all laws together; any friction, and it beside the laws; where curves are tried, of each kind
+  /// any curve, alone and beside the laws.
   /// Of the finer lines, alone, only the few bends that gain much, at the places that explain nearly as much as any,
   /// where what they leave is more than noise.
   struct Span {

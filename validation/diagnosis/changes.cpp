@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
@@ -21,6 +22,7 @@ constexpr const char* load_at_tool = "rig.load_cell";
 constexpr std::size_t most_apart = 4;     // nodes of a load
 constexpr double no_force = 1e-9;         // of the largest
 constexpr double size_of_a_curve = 1e-3;  // m
+constexpr int ways_of_friction = 8;
 constexpr std::size_t parts_of_a_line = 7, parts_of_a_finer_line = 61;
 constexpr std::size_t forces_of_a_part = 10;  // of a finer line, at least
 
@@ -88,6 +90,14 @@ Eigen::Matrix<double, 6, 12> other_loads(const Vector6& F, const Matrix3& R) {
   }
   out.rightCols<6>() = F.asDiagonal();
   return out;
+}
+
+/// Of a motion: holds against it, in its unit, until it slips after `way`. At rest it holds nothing.
+subject::Transmissions::Curve rubbing(double way) {
+  return [way, before = 0.0, held = 0.0](double motion) mutable {
+    held = std::clamp(held + motion - std::exchange(before, motion), -way, way);
+    return held;
+  };
 }
 
 }  // namespace
@@ -278,6 +288,33 @@ MatrixX Changes::by_any_curve(const effects::PlacedEffect& e, Curves kind) const
     const VectorX change = -statistics::rows_of(study.values, *told);
     if (const double length = change.norm(); length > 0) out.emplace_back(size_of_a_curve / length * change);
   }
+  return statistics::side_by_side(out, null_.size());
+}
+
+bool Changes::may_rub(const subject::Place& place) const {
+  return place.freedoms.size() == 1 && place.others.empty() && place.hold != subject::Hold::rigid && transmissions_ &&
+         observations_.comparison().study.data->readings.front().sequence;
+}
+
+MatrixX Changes::by_any_friction(const subject::Place& place, std::optional<int> leg) const {
+  const compare::ResidualStudy& study = observations_.comparison().study;
+  std::vector<MatrixX> out;
+  if (!may_rub(place)) return MatrixX(null_.size(), 0);
+  const auto add = [&](const std::function<subject::Transmissions::Curve()>& at_rest) {
+    const auto told = transmissions_->change_beside(place, leg, at_rest, *study.data);
+    if (!told) return false;
+    const VectorX change = statistics::rows_of(study.values, *told);
+    if (const double length = change.norm(); length > 0) out.emplace_back(size_of_a_curve / length * change);
+    return true;
+  };
+  double most = 0;
+  const bool known = add([&] {
+    return [&most](double motion) {
+      most = std::max(most, std::abs(motion));
+      return motion;
+    };
+  });
+  for (int i = 1; known && i <= ways_of_friction; ++i) add([way = std::ldexp(most, -i)] { return rubbing(way); });
   return statistics::side_by_side(out, null_.size());
 }
 

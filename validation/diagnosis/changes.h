@@ -53,6 +53,13 @@ class Changes {
   /// Any curve of deflection δ over force f, in each freedom of the effect's place in a machine. Columns of the size of
   /// a motion of 1 mm; none where statics does not tell the forces.
   MatrixX by_any_curve(const effects::PlacedEffect&, Curves) const;
+  /// Any force that rubs beside the one freedom of a place in a machine, starting relaxed at each pose: that
+  /// holds until it slips after one of eight ways, each half of the one before, and one that never slips. What rubs in
+  /// whatever way is close to a sum of these (the Prandtl–Ishlinskii model, W. D. Iwan, J. Appl. Mech. 33, 1966).
+  /// Columns as of curves; none where statics does not tell the motion.
+  MatrixX by_any_friction(const subject::Place&, std::optional<int> leg) const;
+  /// Whether the place has one freedom, and the readings a sequence.
+  bool may_rub(const subject::Place&) const;
   /// At the start values; nullopt where it has to be predicted.
   std::optional<VectorX> by_statics(const effects::PlacedEffect&) const;
   /// Of any of these effects. Throws where the subject does not stand with it.

@@ -107,6 +107,7 @@ std::pair<Signature, MatrixX> weighed(const effects::PlacedEffect& e, const Chan
   s.one_sided = s.shaped ? amplitude_from_nothing(*e.effect) : one_sided(e);
   if (const auto& place = e.effect->place) s.whatever_the_law = any.at(*place, e.leg, o);
   s.any_curve = any.curve_at(e, o);
+  if (const auto& place = e.effect->place) s.any_friction = any.friction_at(*place, e.leg, o);
   return {std::move(s), std::move(spanned.coordinates)};
 }
 
@@ -118,7 +119,7 @@ std::vector<PlaceWithoutLaw> places_without_law(const std::vector<Signature>& al
     if (const auto& place = s.effect.effect->place) known.insert(spot_of(*place, s.effect.leg));
   std::vector<PlaceWithoutLaw> out;
   for_each_place(o->subject(), [&](const subject::Place& p, std::optional<int> leg) {
-    const Columns whatever = any.at(p, leg, o);
+    const Columns whatever = any.where_no_law_is(p, leg, o);
     if (!whatever || known.contains(spot_of(p, leg)) || whatever().cols() == 0) return;
     known.insert(spot_of(p, leg));
     out.push_back({p, leg, whatever});
@@ -201,7 +202,7 @@ Signature SignaturesAtPlaces::law_seen_by(const std::shared_ptr<const Observatio
 }
 
 Columns SignaturesAtPlaces::seen_by(const std::shared_ptr<const Observations>& o, const PlaceWithoutLaw& p) const {
-  return whatever_->at(p.place, p.leg, o);
+  return whatever_->where_no_law_is(p.place, p.leg, o);
 }
 
 std::vector<Signature> signatures(const Observations& o, const std::vector<effects::Effect>& effects, int threads,

@@ -24,6 +24,7 @@ struct Signature {
   bool one_sided = false;              ///< physics fixes the amplitude's sign (where shaped, that of the columns)
   Columns whatever_the_law = nullptr;  ///< at its place, as any_curve (WhateverTheLaw)
   AnyCurve any_curve = nullptr;
+  Columns any_friction = nullptr;
 
   int amplitudes() const { return shaped ? 1 : static_cast<int>(basis.cols()); }
   /// Inner product of the change at the start values with a residual.

@@ -47,4 +47,17 @@ AnyCurve WhateverTheLaw::curve_at(const effects::PlacedEffect& e, std::shared_pt
   return [changes = changes_, e, o = std::move(o)](Curves c) { return as_seen(*o, changes->by_any_curve(e, c)); };
 }
 
+Columns WhateverTheLaw::friction_at(const subject::Place& place, std::optional<int> leg,
+                                    std::shared_ptr<const Observations> o) const {
+  if (!changes_->may_rub(place)) return nullptr;
+  return
+      [changes = changes_, place, leg, o = std::move(o)] { return as_seen(*o, changes->by_any_friction(place, leg)); };
+}
+
+Columns WhateverTheLaw::where_no_law_is(const subject::Place& place, std::optional<int> leg,
+                                        std::shared_ptr<const Observations> o) const {
+  Columns out = at(place, leg, o);
+  return out ? out : friction_at(place, leg, std::move(o));
+}
+
 }  // namespace deflect::diagnosis

@@ -17,10 +17,11 @@ namespace deflect::subject {
 namespace {
 
 /// One freedom where it stands: the force f = gᵀF in it under a load F at T, and the displacement g of T when it gives
-/// way by one unit (the principle of virtual forces).
+/// way by one unit (the principle of virtual forces). Of one that is free g is its motion under each unit load, and so
+/// the displacement of T by one unit of force that drives it (Maxwell's theorem).
 struct Freedom6 {
   std::array<Vector6, 6> g;
-  std::array<bool, 6> there{};
+  std::array<bool, 6> there{}, free{};
   int leg = 0;  ///< 1-based; 0: in no leg
 };
 using ByPart = std::multimap<std::string, Freedom6>;
@@ -69,40 +70,56 @@ class Forces {
  public:
   Forces(const Vector3& p_WT, ByPart& out) : p_WT_(p_WT), out_(out) {}
 
-  /// W: the wrench at T that the leg carries under each unit load.
-  void leg(const PlacedLeg& placed, const analytic::Chain& chain, const Matrix6& W, int number,
+  /// Under each unit load. W: the wrench at T that the leg carries; D: the motion of its end relative to its start.
+  void leg(const PlacedLeg& placed, const analytic::Chain& chain, const Matrix6& W, const Matrix6& D, int number,
            const std::vector<std::string>& nested) {
+    Matrix6X passive(6, chain.J_q.cols());
+    for (Eigen::Index i = 0; i < 6; ++i) passive.row(i) = chain.passive_motions(W.col(i), D.col(i), {}).transpose();
     std::size_t group = 0;
+    Eigen::Index next = 0;
+    const auto motions = [&](Eigen::Index count) {
+      next += count;
+      return Matrix6X(passive.middleCols(next - count, count));
+    };
     for (const PlacedPart& part : placed.parts) {
       if (const auto* joint = std::get_if<PlacedJoint>(&part)) {
-        add(*joint, W, number, nested);
+        Eigen::Index free = 0;
+        for (std::size_t i = 0; i < 6; ++i) free += joint->free(i);
+        add(*joint, W, number, nested, 1, motions(free));
       } else if (const auto* member = std::get_if<PlacedMember>(&part)) {
         for (const PlacedJoint& section : sections_of(*member)) add(section, W, number, nested, member->length() / 2);
       } else if (const auto* parallel = std::get_if<PlacedParallel>(&part)) {
-        branches(*parallel, chain.groups.at(group++), W, number, nested);
+        const analytic::Group& own = chain.groups.at(group++);
+        branches(*parallel, own, W, motions(own.J.cols()), number, nested);
       }
     }
   }
 
-  /// `compliance`: of each of its freedoms, times which a law's there counts.
+  /// `compliance`: of each of its freedoms, times which a law's there counts. `motions`: of the free ones, under each
+  /// unit load.
   void add(const PlacedJoint& joint, const Matrix6& W, int number, const std::vector<std::string>& nested,
-           double compliance = 1) {
+           double compliance = 1, const Matrix6X& motions = Matrix6X(6, 0)) {
     Freedom6 here;
     here.leg = number;
+    Eigen::Index next = 0;
     for (std::size_t i = 0; i < 6; ++i) {
       here.there[i] = !joint.laws[i].empty();
-      here.g[i] = std::sqrt(compliance) * W.transpose() * analytic::freedom_twist(joint, i, p_WT_);
+      here.free[i] = joint.free(i);
+      here.g[i] = here.free[i] ? Vector6(motions.col(next++))
+                               : std::sqrt(compliance) * W.transpose() * analytic::freedom_twist(joint, i, p_WT_);
     }
     for (const std::string& before : nested) out_.emplace(before + described(joint.part), here);
   }
 
  private:
-  void branches(const PlacedParallel& parallel, const analytic::Group& group, const Matrix6& W, int number,
-                const std::vector<std::string>& nested) {
+  void branches(const PlacedParallel& parallel, const analytic::Group& group, const Matrix6& W, const Matrix6X& motions,
+                int number, const std::vector<std::string>& nested) {
     std::vector<Matrix6> own(parallel.branches.size());
+    Matrix6 D;
     for (Eigen::Index i = 0; i < 6; ++i) {
-      const std::vector<Vector6> wrenches = group.solve(W.col(i), {}).wrenches;
-      for (std::size_t b = 0; b < own.size(); ++b) own[b].col(i) = wrenches[b];
+      const analytic::Group::State state = group.solve(W.col(i), {});
+      for (std::size_t b = 0; b < own.size(); ++b) own[b].col(i) = state.wrenches[b];
+      D.col(i) = state.t + group.J * motions.row(i).transpose();
     }
     for (std::size_t b = 0; b < own.size(); ++b) {
       std::vector<std::string> inner = nested;
@@ -113,7 +130,7 @@ class Forces {
           inner.push_back(fmt::format("{}{}.mounts.{}.", before, parallel.part, b));
         }
       }
-      leg(parallel.branches[b], group.branches[b], own[b], number, inner);
+      leg(parallel.branches[b], group.branches[b], own[b], D, number, inner);
     }
   }
 
@@ -123,18 +140,20 @@ class Forces {
 
 ByPart forces_at(const Configuration& drawn, const Configuration& yielding) {
   ByPart out;
-  const analytic::AnalyticModel model(drawn);
+  const analytic::Group legs = analytic::legs_of(drawn);
   std::vector<Matrix6> W(drawn.legs.size(), Matrix6::Zero());
+  Matrix6 D;
   for (Eigen::Index i = 0; i < 6; ++i) {
-    const std::vector<Vector6> wrenches = model.solve(Vector6::Unit(i)).leg_wrenches;
-    for (std::size_t l = 0; l < W.size(); ++l) W[l].col(i) = wrenches[l];
+    const analytic::Group::State state = legs.solve(Vector6::Unit(i), {});
+    for (std::size_t l = 0; l < W.size(); ++l) W[l].col(i) = state.wrenches[l];
+    D.col(i) = state.t;
   }
   Forces forces(drawn.pose.p_WT, out);
   int number = 0;
   for (std::size_t l = 0; l < W.size(); ++l) {
     ++number;
     if (!drawn.legs[l].beside)
-      forces.leg(yielding.legs[l], model.chains()[l], W[l], number, {"", fmt::format("mounts.{}.", l)});
+      forces.leg(yielding.legs[l], legs.branches[l], W[l], D, number, {"", fmt::format("mounts.{}.", l)});
   }
   for (PlacedJoint fixture : {drawn.base, drawn.tool}) {
     for (auto& laws : fixture.laws) laws = {LinearLaw{1}};
@@ -167,6 +186,15 @@ double deflection_of(const Law& law, double force) {
   return analytic::deflection(law, force);
 }
 
+/// The readings of a pose in the order in which they were taken.
+std::vector<std::size_t> taken(const measurement::PoseGroup& group, const measurement::Measurements& data) {
+  std::vector<std::size_t> out = group.readings;
+  if (data.readings[out.front()].sequence)
+    std::sort(out.begin(), out.end(),
+              [&](std::size_t a, std::size_t b) { return *data.readings[a].sequence < *data.readings[b].sequence; });
+  return out;
+}
+
 struct Rig {
   prediction::TrueLoads loads;
   prediction::RecordedMotion sensor;
@@ -181,8 +209,8 @@ class MachineTransmissions final : public Transmissions {
                                const measurement::Measurements& data) const override {
     const bool moved_by_shape = std::holds_alternative<ClearanceLaw>(law) && !carries_the_load_itself(place);
     std::vector<bool> floating(data.readings.size(), false);
-    auto readings = changed(place, leg, data, [&](std::size_t reading, const Vector6& g, const Vector6& F) {
-      if (moved_by_shape && floats(g, F, size_)) floating[reading] = true;
+    auto readings = changed(place, leg, in_series, data, [&](Here here, const Vector6& g, const Vector6& F) {
+      if (moved_by_shape && floats(g, F, size_)) floating[here.reading] = true;
       return deflection_of(law, g.dot(F));
     });
     if (!readings) return std::nullopt;
@@ -191,39 +219,58 @@ class MachineTransmissions final : public Transmissions {
 
   std::optional<std::vector<Vector6>> change(const Place& place, std::optional<int> leg, const Curve& curve,
                                              const measurement::Measurements& data) const override {
-    return changed(place, leg, data, [&](std::size_t, const Vector6& g, const Vector6& F) {
-      return curve(floats(g, F, size_) ? 0 : g.dot(F));
+    return changed(place, leg, in_series, data,
+                   [&](Here, const Vector6& g, const Vector6& F) { return curve(floats(g, F, size_) ? 0 : g.dot(F)); });
+  }
+
+  std::optional<std::vector<Vector6>> change_beside(const Place& place, std::optional<int> leg,
+                                                    const std::function<Curve()>& at_rest,
+                                                    const measurement::Measurements& data) const override {
+    if (place.freedoms.size() != 1 || !place.others.empty()) return std::nullopt;
+    std::map<std::pair<std::size_t, std::size_t>, Curve> curves;  // by pose and freedom
+    return changed(place, leg, side_by_side, data, [&](Here here, const Vector6& g, const Vector6& F) {
+      const auto [at, is_new] = curves.emplace(std::pair(here.pose, here.freedom), nullptr);
+      if (is_new) at->second = at_rest();
+      return at->second(floats(g, F, size_) ? 0 : g.dot(F));
     });
   }
 
  private:
-  /// `deflection(reading, g, F)`: of a freedom, under the load F.
+  /// In the order of the readings at a pose.
+  struct Here {
+    std::size_t pose, reading, freedom;
+  };
+  enum Kind { in_series, side_by_side };
+
+  /// `deflection(here, g, F)`: of a freedom, under the load F.
   template <class Deflection>
-  std::optional<std::vector<Vector6>> changed(const Place& place, std::optional<int> leg,
+  std::optional<std::vector<Vector6>> changed(const Place& place, std::optional<int> leg, Kind kind,
                                               const measurement::Measurements& data,
                                               const Deflection& deflection) const {
     std::vector<Vector6> out(data.readings.size(), Vector6::Zero());
     for (std::size_t p = 0; p < data.poses.size(); ++p) {
-      const std::vector<Vector6> all = freedoms(p, place, leg);
+      const std::vector<Vector6> all = freedoms(p, place, leg, kind);
       if (all.empty()) return std::nullopt;
-      for (const std::size_t i : data.poses[p].readings) {
+      for (const std::size_t i : taken(data.poses[p], data)) {
         const measurement::Reading& r = data.readings[i];
         const Vector6 F = place.kind == PlaceKind::tool ? rigs_[p].loads.through_tool(r) : rigs_[p].loads.at_T(r);
         Vector6 d = Vector6::Zero();
-        for (const Vector6& g : all) d += g * deflection(i, g, F);
+        for (std::size_t k = 0; k < all.size(); ++k) d += all[k] * deflection({p, i, k}, all[k], F);
         out[i] = rigs_[p].sensor.of(d, Geometry::linear);
       }
     }
     return out;
   }
 
-  std::vector<Vector6> freedoms(std::size_t pose, const Place& place, std::optional<int> leg) const {
+  std::vector<Vector6> freedoms(std::size_t pose, const Place& place, std::optional<int> leg, Kind kind) const {
     std::vector<Vector6> out;
     const auto add = [&](const std::string& part, const std::vector<std::size_t>& freedoms) {
       const auto [first, last] = by_pose_[pose].equal_range(part);
-      for (auto at = first; at != last; ++at)
+      for (auto at = first; at != last; ++at) {
+        const auto& [g, there, free, number] = at->second;
         for (const std::size_t i : freedoms)
-          if (at->second.there[i] && (!leg || at->second.leg == *leg)) out.push_back(at->second.g[i]);
+          if ((there[i] || (kind == side_by_side && free[i])) && (!leg || number == *leg)) out.push_back(g[i]);
+      }
     };
     add(place.part, place.freedoms);
     for (const OtherPart& other : place.others) add(other.part, other.freedoms);
@@ -255,11 +302,20 @@ bool same_forces(const ByPart& a, const ByPart& b) {
   return apart <= rounding * largest;
 }
 
-/// Nothing where forces hang on a law that is not linear. In a determinate machine they do not.
+/// Nothing where forces hang on a law that is not linear. In a determinate machine they do not, but motions do: then
+/// those of free joints are not told.
 std::optional<ByPart> proportional_forces_at(const Configuration& drawn, const Configuration& yielding) {
   if (all_linear(drawn)) return forces_at(drawn, yielding);
-  ByPart out = forces_at(with_springs(drawn, 1), yielding);
-  if (!same_forces(out, forces_at(with_springs(drawn, 1.2), yielding))) return std::nullopt;
+  const auto without_motions = [](ByPart forces) {
+    for (auto& [part, freedoms] : forces) {
+      for (std::size_t i = 0; i < 6; ++i)
+        if (freedoms.free[i]) freedoms.g[i].setZero();
+      freedoms.free.fill(false);
+    }
+    return forces;
+  };
+  ByPart out = without_motions(forces_at(with_springs(drawn, 1), yielding));
+  if (!same_forces(out, without_motions(forces_at(with_springs(drawn, 1.2), yielding)))) return std::nullopt;
   return out;
 }
 

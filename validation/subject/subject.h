@@ -95,6 +95,12 @@ class Transmissions {
   using Curve = std::function<double(double force)>;
   virtual std::optional<std::vector<Vector6>> change(const Place&, std::optional<int> leg, const Curve&,
                                                      const measurement::Measurements&) const = 0;
+  /// The same, up to a factor, where beside what is there a force holds the one freedom of the place: any function of
+  /// its motion, which may remember. `at_rest` makes one for each leg and pose, which is called in the order of the
+  /// readings with the motion, up to that factor. Empty also at several freedoms or parts.
+  virtual std::optional<std::vector<Vector6>> change_beside(const Place&, std::optional<int> leg,
+                                                            const std::function<Curve()>& at_rest,
+                                                            const measurement::Measurements&) const = 0;
 };
 
 class Deviations;
