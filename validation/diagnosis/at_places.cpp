@@ -62,9 +62,9 @@ std::vector<LawsAtPlace> laws_by_place(const Explanations& all) {
 bool has_curve(const LawsAtPlace& p) { return !p.without && p.laws.front()->any_curve; }
 bool has_friction(const LawsAtPlace& p) { return !p.without && p.laws.front()->any_friction; }
 
-/// How many may explain it: its laws; three kinds of curve, two of them beside its laws; frictions, and they beside its
-/// laws. They share its prior.
-int spans_of(const LawsAtPlace& p) { return 1 + (has_curve(p) ? 5 : 0) + (has_friction(p) ? 2 : 0); }
+/// How many may explain it and share its prior: its laws; a few frictions; three kinds of curve, two of them beside its
+/// laws. Places with curves count alike, whether they can rub or not.
+int spans_of(const LawsAtPlace& p) { return has_curve(p) ? 7 : has_friction(p) ? 2 : 1; }
 
 AtPlace::Span explained_within(const MatrixX& orthonormal, const VectorX& residual) {
   return {(orthonormal.transpose() * residual).squaredNorm(), static_cast<int>(orthonormal.cols())};
@@ -93,8 +93,8 @@ AtPlace::Span span_of_few(const MatrixX& columns, const VectorX& residual) {
   return out;
 }
 
-/// By all laws at a place, by any friction and by any of the curves there, alone and, but for finer lines, beside the
-/// laws.
+/// By all laws at a place, by a few frictions there, and by any of the curves, alone and, but for finer lines, beside
+/// the laws.
 AtPlace explained_by(const Weighed& all, const LawsAtPlace& place, const VectorX& residual, const MatrixX& fitted,
                      std::span<const Curves> curves) {
   AtPlace out;
@@ -102,9 +102,12 @@ AtPlace explained_by(const Weighed& all, const LawsAtPlace& place, const VectorX
   out.prior = place.prior / spans_of(place);
   double most = -1;
   std::vector<MatrixX> columns;
-  Columns whatever = place.without ? all.whatever(*place.without) : nullptr;
+  Columns whatever = nullptr, friction = nullptr;
   AnyCurve curve = nullptr;
-  Columns friction = nullptr;
+  if (place.without) {
+    const PlaceWithoutLaw here = all.place(*place.without);
+    whatever = here.whatever_the_law, friction = here.any_friction;
+  }
   const auto add = [&](const MatrixX& basis) {
     const MatrixX beside = basis - fitted * (fitted.transpose() * basis);
     for (const auto column : beside.colwise())
@@ -124,23 +127,23 @@ AtPlace explained_by(const Weighed& all, const LawsAtPlace& place, const VectorX
   if (whatever) add(whatever());
   out.spans.push_back(span_of(columns, residual));
   const std::vector<MatrixX> laws = std::move(columns);
-  const auto alone_and_beside = [&](const MatrixX& basis) {
+  const auto few_of = [&](const MatrixX& basis) {
     columns.clear();
     add(basis);
-    out.spans.push_back(span_of(columns, residual));
-    columns.insert(columns.end(), laws.begin(), laws.end());
-    out.spans.push_back(span_of(columns, residual));
+    if (!columns.empty())
+      out.spans.push_back(span_of_few(statistics::side_by_side(columns, residual.size()), residual));
   };
-  if (friction) alone_and_beside(friction());
+  if (friction) few_of(friction());
   for (const Curves kind : curves) {
-    if (kind != Curves::finer_lines) {
-      alone_and_beside(curve(kind));
+    if (kind == Curves::finer_lines) {
+      few_of(curve(kind));
       continue;
     }
     columns.clear();
     add(curve(kind));
-    if (!columns.empty())
-      out.spans.push_back(span_of_few(statistics::side_by_side(columns, residual.size()), residual));
+    out.spans.push_back(span_of(columns, residual));
+    columns.insert(columns.end(), laws.begin(), laws.end());
+    out.spans.push_back(span_of(columns, residual));
   }
   std::erase_if(out.spans, [](const AtPlace::Span& s) { return s.dimension == 0; });
   return out;
@@ -206,8 +209,8 @@ Signature Weighed::law(const Signature& s) const {
   return signatures_ ? signatures_->law_seen_by(observations_, as_size(&s - all_->laws.data())) : s;
 }
 
-Columns Weighed::whatever(const PlaceWithoutLaw& p) const {
-  return signatures_ ? signatures_->seen_by(observations_, p) : p.whatever_the_law;
+PlaceWithoutLaw Weighed::place(const PlaceWithoutLaw& p) const {
+  return signatures_ ? signatures_->seen_by(observations_, p) : p;
 }
 
 std::vector<AtPlace> at_places(const Weighed& all, const Hypothesis& effects, const Fit& fit, int threads) {

@@ -29,7 +29,7 @@ class Weighed {
   const Explanations& all() const { return *all_; }
   /// Of one of the laws of all(). Computed at each call: kept for all laws they would take as much memory again.
   Signature law(const Signature&) const;
-  Columns whatever(const PlaceWithoutLaw&) const;
+  PlaceWithoutLaw place(const PlaceWithoutLaw&) const;
 
  private:
   const Explanations* all_;
@@ -42,8 +42,8 @@ struct AtPlace {
   const Signature* best = nullptr;  ///< of the laws at the place the one that explains most; null without any
   const PlaceWithoutLaw* without_law = nullptr;  ///< where there is none
   bool other_way = false;                        ///< physics lets that one act to the other side only
-  /// What may explain it: all laws together; any friction, and it beside the laws; where curves are tried, of each kind
-  /// any curve, alone and beside the laws.
+  /// What may explain it: all laws together; of frictions those that gain much; where curves are tried, of each
+  /// kind any curve, alone and beside the laws.
   /// Of the finer lines, alone, only the few bends that gain much, at the places that explain nearly as much as any,
   /// where what they leave is more than noise.
   struct Span {

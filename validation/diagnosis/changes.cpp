@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
@@ -22,7 +21,6 @@ constexpr const char* load_at_tool = "rig.load_cell";
 constexpr std::size_t most_apart = 4;     // nodes of a load
 constexpr double no_force = 1e-9;         // of the largest
 constexpr double size_of_a_curve = 1e-3;  // m
-constexpr int ways_of_friction = 8;
 constexpr std::size_t parts_of_a_line = 7, parts_of_a_finer_line = 61;
 constexpr std::size_t forces_of_a_part = 10;  // of a finer line, at least
 
@@ -92,20 +90,14 @@ Eigen::Matrix<double, 6, 12> other_loads(const Vector6& F, const Matrix3& R) {
   return out;
 }
 
-/// Of a motion: holds against it, in its unit, until it slips after `way`. At rest it holds nothing.
-subject::Transmissions::Curve rubbing(double way) {
-  return [way, before = 0.0, held = 0.0](double motion) mutable {
-    held = std::clamp(held + motion - std::exchange(before, motion), -way, way);
-    return held;
-  };
-}
-
 }  // namespace
 
 Changes::Changes(const Observations& o, const std::vector<effects::PlacedEffect>& effects, int threads)
     : observations_(o),
       null_(o.residual(o.subject())),
       transmissions_(o.subject().stand(*o.comparison().study.data)->transmissions()) {
+  const measurement::Measurements& data = *o.comparison().study.data;
+  if (data.readings.front().sequence) node_motions_ = o.subject().stand(data)->node_motions(data);
   if (!transmissions_) return;
   std::vector<const effects::PlacedEffect*> first;
   for (const effects::PlacedEffect& e : effects)
@@ -291,31 +283,38 @@ MatrixX Changes::by_any_curve(const effects::PlacedEffect& e, Curves kind) const
   return statistics::side_by_side(out, null_.size());
 }
 
-bool Changes::may_rub(const subject::Place& place) const {
-  return place.freedoms.size() == 1 && place.others.empty() && place.hold != subject::Hold::rigid && transmissions_ &&
-         observations_.comparison().study.data->readings.front().sequence;
+const subject::NodeMotion* Changes::node_motion(const subject::Place& place) const {
+  const auto at = std::find_if(node_motions_.begin(), node_motions_.end(), [&](const subject::NodeMotion& m) {
+    return m.place.path == place.path && m.place.freedoms == place.freedoms;
+  });
+  return at == node_motions_.end() ? nullptr : &*at;
 }
 
-MatrixX Changes::by_any_friction(const subject::Place& place, std::optional<int> leg) const {
+bool Changes::may_be_held(const subject::Place& place) const {
+  if (place.freedoms.size() != 1 || !place.others.empty() || place.hold == subject::Hold::rigid) return false;
+  return node_motion(place) || (transmissions_ && observations_.comparison().study.data->readings.front().sequence);
+}
+
+/// What the readings change, up to a factor, by a force that holds the place.
+std::optional<VectorX> Changes::by_holding(const subject::Place& place, std::optional<int> leg,
+                                           const std::function<Curve()>& at_rest) const {
   const compare::ResidualStudy& study = observations_.comparison().study;
-  std::vector<MatrixX> out;
-  if (!may_rub(place)) return MatrixX(null_.size(), 0);
-  const auto add = [&](const std::function<subject::Transmissions::Curve()>& at_rest) {
-    const auto told = transmissions_->change_beside(place, leg, at_rest, *study.data);
-    if (!told) return false;
-    const VectorX change = statistics::rows_of(study.values, *told);
-    if (const double length = change.norm(); length > 0) out.emplace_back(size_of_a_curve / length * change);
-    return true;
-  };
-  double most = 0;
-  const bool known = add([&] {
-    return [&most](double motion) {
-      most = std::max(most, std::abs(motion));
-      return motion;
-    };
-  });
-  for (int i = 1; known && i <= ways_of_friction; ++i) add([way = std::ldexp(most, -i)] { return rubbing(way); });
-  return statistics::side_by_side(out, null_.size());
+  if (const subject::NodeMotion* node = node_motion(place)) {
+    VectorX held(node->by_reading.size()), out(null_.size());
+    std::vector<Curve> begun(study.data->poses.size());
+    for (const std::size_t i : measurement::in_sequence(*study.data, "friction")) {
+      Curve& curve = begun[study.data->readings[i].pose];
+      if (!curve) curve = at_rest();
+      held(as_index(i)) = curve(node->by_reading(as_index(i)));
+    }
+    for (std::size_t i = 0; i < study.values.size(); ++i) {
+      const measurement::MeasuredValue& v = study.values[i];
+      out(as_index(i)) = node->moves(as_index(v.channel) - 6) * held(as_index(v.reading));
+    }
+    return out;
+  }
+  const auto told = transmissions_->change_beside(place, leg, at_rest, *study.data);
+  return told ? std::optional(statistics::rows_of(study.values, *told)) : std::nullopt;
 }
 
 std::optional<VectorX> Changes::by_statics(const effects::PlacedEffect& e) const {

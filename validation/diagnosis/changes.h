@@ -53,13 +53,16 @@ class Changes {
   /// Any curve of deflection δ over force f, in each freedom of the effect's place in a machine. Columns of the size of
   /// a motion of 1 mm; none where statics does not tell the forces.
   MatrixX by_any_curve(const effects::PlacedEffect&, Curves) const;
-  /// Any force that rubs beside the one freedom of a place in a machine, starting relaxed at each pose: that
-  /// holds until it slips after one of eight ways, each half of the one before, and one that never slips. What rubs in
-  /// whatever way is close to a sum of these (the Prandtl–Ishlinskii model, W. D. Iwan, J. Appl. Mech. 33, 1966).
-  /// Columns as of curves; none where statics does not tell the motion.
-  MatrixX by_any_friction(const subject::Place&, std::optional<int> leg) const;
-  /// Whether the place has one freedom, and the readings a sequence.
-  bool may_rub(const subject::Place&) const;
+  using Curve = subject::Transmissions::Curve;
+  /// Whether it is known what a force does that holds the place, which remembers: the place has one freedom, of a joint
+  /// of a machine or of a node of a frame, that is not rigid, and the readings have a sequence.
+  bool may_be_held(const subject::Place&) const;
+  /// What such a force changes, up to a factor. `at_rest` makes one for each leg and pose: called in the sequence of
+  /// the readings with the motion, up to a factor, it tells the force.
+  std::optional<VectorX> by_holding(const subject::Place&, std::optional<int> leg,
+                                    const std::function<Curve()>& at_rest) const;
+  /// Of a frame whose readings have a sequence.
+  const std::vector<subject::NodeMotion>& node_motions() const { return node_motions_; }
   /// At the start values; nullopt where it has to be predicted.
   std::optional<VectorX> by_statics(const effects::PlacedEffect&) const;
   /// Of any of these effects. Throws where the subject does not stand with it.
@@ -73,6 +76,7 @@ class Changes {
   MatrixX by_any_elongation(const subject::Place&) const;
   MatrixX by_any_section(const subject::Place&, std::optional<int> leg) const;
   std::vector<subject::Transmissions::Curve> curves_of(const effects::PlacedEffect&, Curves) const;
+  const subject::NodeMotion* node_motion(const subject::Place&) const;
   bool agrees(const effects::PlacedEffect&) const;
   bool moved_by_play(const effects::EffectInstance&, const std::vector<bool>& readings, VectorX& change) const;
   bool are_seen(const VectorX&) const;
@@ -81,6 +85,7 @@ class Changes {
   const Observations observations_;
   VectorX null_;  ///< Observations::residual() of its subject
   std::unique_ptr<const subject::Transmissions> transmissions_;
+  std::vector<subject::NodeMotion> node_motions_;
   std::map<std::string, bool> known_;  ///< by place: whether statics agrees
 };
 

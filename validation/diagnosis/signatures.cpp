@@ -118,12 +118,14 @@ std::vector<PlaceWithoutLaw> places_without_law(const std::vector<Signature>& al
   for (const Signature& s : all)
     if (const auto& place = s.effect.effect->place) known.insert(spot_of(*place, s.effect.leg));
   std::vector<PlaceWithoutLaw> out;
-  for_each_place(o->subject(), [&](const subject::Place& p, std::optional<int> leg) {
-    const Columns whatever = any.where_no_law_is(p, leg, o);
-    if (!whatever || known.contains(spot_of(p, leg)) || whatever().cols() == 0) return;
+  const auto add = [&](const subject::Place& p, std::optional<int> leg) {
+    PlaceWithoutLaw place{p, leg, any.at(p, leg, o), any.friction_at(p, leg, o)};
+    if (known.contains(spot_of(p, leg)) || !place.shows()) return;
     known.insert(spot_of(p, leg));
-    out.push_back({p, leg, whatever});
-  });
+    out.push_back(std::move(place));
+  };
+  for_each_place(o->subject(), add);
+  for (const subject::NodeMotion& node : any.node_motions()) add(node.place, std::nullopt);
   return out;
 }
 
@@ -201,8 +203,9 @@ Signature SignaturesAtPlaces::law_seen_by(const std::shared_ptr<const Observatio
   return weighed(s.effect, *change, o, *whatever_).first;
 }
 
-Columns SignaturesAtPlaces::seen_by(const std::shared_ptr<const Observations>& o, const PlaceWithoutLaw& p) const {
-  return whatever_->where_no_law_is(p.place, p.leg, o);
+PlaceWithoutLaw SignaturesAtPlaces::seen_by(const std::shared_ptr<const Observations>& o,
+                                            const PlaceWithoutLaw& p) const {
+  return {p.place, p.leg, whatever_->at(p.place, p.leg, o), whatever_->friction_at(p.place, p.leg, o)};
 }
 
 std::vector<Signature> signatures(const Observations& o, const std::vector<effects::Effect>& effects, int threads,

@@ -35,7 +35,11 @@ struct Signature {
 struct PlaceWithoutLaw {
   subject::Place place;
   std::optional<int> leg;
-  Columns whatever_the_law;
+  Columns whatever_the_law = nullptr, any_friction = nullptr;  ///< null where there is none
+
+  bool shows() const {
+    return (whatever_the_law && whatever_the_law().cols() > 0) || (any_friction && any_friction().cols() > 0);
+  }
 };
 
 /// What may explain a residual.
@@ -63,10 +67,9 @@ class SignaturesAtPlaces {
 
   /// Whether these observations weigh as those of the last weighing do.
   bool are_weighed_for(const Observations&) const;
-  /// Law k of known(), and what may happen at a place without one, as other observations weigh them, which must be as
-  /// in weigh_for().
+  /// Law k of known(), and a place without one, as other observations weigh them, which must be as in weigh_for().
   Signature law_seen_by(const std::shared_ptr<const Observations>&, std::size_t k) const;
-  Columns seen_by(const std::shared_ptr<const Observations>&, const PlaceWithoutLaw&) const;
+  PlaceWithoutLaw seen_by(const std::shared_ptr<const Observations>&, const PlaceWithoutLaw&) const;
 
   const std::vector<Signature>& all() const& { return known_.laws; }
   std::vector<Signature> all() && { return std::move(known_.laws); }

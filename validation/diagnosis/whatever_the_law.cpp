@@ -2,7 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
 #include <vector>
+
+#include "validation/statistics/columns.h"
 
 namespace deflect::diagnosis {
 namespace {
@@ -22,6 +27,39 @@ MatrixX as_seen(const Observations& o, const MatrixX& columns) {
   MatrixX out = white(Eigen::all, seen);
   out.colwise().normalize();
   return out;
+}
+
+constexpr int ways_of_friction = 16;
+constexpr double size_of_a_column = 1e-3;  // m
+
+/// Of a motion: holds against it, in its unit, until it slips after `way`. At rest it holds nothing.
+Changes::Curve rubbing(double way) {
+  return [way, before = 0.0, held = 0.0](double motion) mutable {
+    held = std::clamp(held + motion - std::exchange(before, motion), -way, way);
+    return held;
+  };
+}
+
+/// What rubs beside the freedom of a place in whatever way is close to a sum of forces that each hold until they slip
+/// (the Prandtl–Ishlinskii model, W. D. Iwan, J. Appl. Mech. 33, 1966): after sixteen ways, each 0.7 of
+/// the one before, and one that never slips. Relaxed at each pose.
+MatrixX any_friction(const Changes& changes, const subject::Place& place, std::optional<int> leg) {
+  std::vector<MatrixX> out;
+  const auto add = [&](const std::function<Changes::Curve()>& at_rest) {
+    const std::optional<VectorX> change = changes.by_holding(place, leg, at_rest);
+    if (const double length = change ? change->norm() : 0; length > 0)
+      out.emplace_back(size_of_a_column / length * *change);
+  };
+  double most = 0;
+  add([&] {
+    return [&most](double motion) {
+      most = std::max(most, std::abs(motion));
+      return motion;
+    };
+  });
+  for (int i = 1; most > 0 && i <= ways_of_friction; ++i)
+    add([way = most * std::pow(0.5, 0.5 * i)] { return rubbing(way); });
+  return statistics::side_by_side(out, out.empty() ? 0 : out.front().rows());
 }
 
 }  // namespace
@@ -49,15 +87,8 @@ AnyCurve WhateverTheLaw::curve_at(const effects::PlacedEffect& e, std::shared_pt
 
 Columns WhateverTheLaw::friction_at(const subject::Place& place, std::optional<int> leg,
                                     std::shared_ptr<const Observations> o) const {
-  if (!changes_->may_rub(place)) return nullptr;
-  return
-      [changes = changes_, place, leg, o = std::move(o)] { return as_seen(*o, changes->by_any_friction(place, leg)); };
-}
-
-Columns WhateverTheLaw::where_no_law_is(const subject::Place& place, std::optional<int> leg,
-                                        std::shared_ptr<const Observations> o) const {
-  Columns out = at(place, leg, o);
-  return out ? out : friction_at(place, leg, std::move(o));
+  if (!changes_->may_be_held(place)) return nullptr;
+  return [changes = changes_, place, leg, o = std::move(o)] { return as_seen(*o, any_friction(*changes, place, leg)); };
 }
 
 }  // namespace deflect::diagnosis

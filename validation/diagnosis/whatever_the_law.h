@@ -31,10 +31,9 @@ class WhateverTheLaw {
   /// Any curve of deflection over force where an effect in a machine acts (Changes::by_any_curve()); null where statics
   /// does not tell the forces.
   AnyCurve curve_at(const effects::PlacedEffect&, std::shared_ptr<const Observations>) const;
-  /// Any friction beside what is there (Changes::by_any_friction()).
+  /// Any friction beside what is there; null where it is not known what that does (Changes::may_be_held()).
   Columns friction_at(const subject::Place&, std::optional<int> leg, std::shared_ptr<const Observations>) const;
-  /// at(), or else friction_at().
-  Columns where_no_law_is(const subject::Place&, std::optional<int> leg, std::shared_ptr<const Observations>) const;
+  const std::vector<subject::NodeMotion>& node_motions() const { return changes_->node_motions(); }
 
  private:
   std::shared_ptr<const Changes> changes_;

@@ -11,6 +11,7 @@
 #include "msa/frame/file/frame_file.h"
 #include "msa/frame/file/frame_tolerances.h"
 #include "validation/subject/frame_groups.h"
+#include "validation/subject/frame_nodes.h"
 #include "validation/subject/frame_places.h"
 #include "validation/subject/frame_readings.h"
 #include "validation/subject/frame_sites.h"
@@ -45,6 +46,9 @@ class FrameStanding : public Standing {
 
   InnerSites inner_sites(const measurement::Measurements& data) const override {
     return inner_sites_of(*frame_, data, *known_);
+  }
+  std::vector<NodeMotion> node_motions(const measurement::Measurements& data) const override {
+    return node_motions_of(*frame_, data, *known_);
   }
 
   std::unique_ptr<const Deviations> deviations(const measurement::Measurements&) const override;

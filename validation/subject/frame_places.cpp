@@ -22,11 +22,6 @@ void set_hold(Place& p, const frame::FreedomLaws& laws, std::size_t freedom, boo
   p.one_stiffness = all.size() == 1 && std::holds_alternative<LinearLaw>(all.front());
 }
 
-/// Whether a plane frame cannot move in this freedom of a node.
-bool out_of_plane(const FrameDescription& f, std::size_t freedom) {
-  return f.plane != frame::Plane::none && (as_index(freedom % 3) == frame::normal_axis(f.plane)) == (freedom < 3);
-}
-
 void add_supports(const FrameDescription& f, std::vector<Place>& out) {
   for (const auto& [node, support] : f.supports)
     for (std::size_t i = 0; i < 6; ++i) {
@@ -98,6 +93,10 @@ void add_stock(const FrameDescription& f, std::vector<Place>& out) {
 }
 
 }  // namespace
+
+bool out_of_plane(const FrameDescription& f, std::size_t freedom) {
+  return f.plane != frame::Plane::none && (as_index(freedom % 3) == frame::normal_axis(f.plane)) == (freedom < 3);
+}
 
 measurement::Quantity quantity_of(const frame::FrameSensor& s) {
   using Reads = frame::FrameSensor::Reads;

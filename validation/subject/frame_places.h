@@ -14,6 +14,9 @@ namespace deflect::subject {
 /// leave the plane.
 std::vector<Place> places_of(const frame::FrameDescription&);
 
+/// Whether a plane frame cannot move in this freedom of a node.
+bool out_of_plane(const frame::FrameDescription&, std::size_t freedom);
+
 /// What a sensor reads.
 measurement::Quantity quantity_of(const frame::FrameSensor&);
 

@@ -73,25 +73,6 @@ LoadCase load_of(const FrameDescription& f, const measurement::Measurements& dat
   return out;
 }
 
-/// One case for each channel of load, in the order of load_channels(), and one for what is always there: misfits, heat,
-/// settlements.
-Named<LoadCase> unit_loads(const FrameDescription& f, const measurement::Measurements& data) {
-  Named<LoadCase> out;
-  for (const std::string& name : data.instruments.load_cases)
-    out.emplace_back("load." + name, named(f.loads, "load case", name, f.name));
-  for (const measurement::LoadChannel& c : measurement::load_channels(data)) {
-    if (c.name.starts_with("load.")) continue;
-    const std::size_t dot = c.name.rfind('.');
-    const auto component = std::find(frame::wrench_names.begin(), frame::wrench_names.end(), c.name.substr(dot + 1)) -
-                           frame::wrench_names.begin();
-    LoadCase unit;
-    unit.nodes.emplace_back(node_of(c.name.substr(0, dot)), Vector6::Unit(component));
-    out.emplace_back(c.name, std::move(unit));
-  }
-  out.emplace_back("always", LoadCase());
-  return out;
-}
-
 frame::FrameResult analysed(FrameDescription f, Named<LoadCase> loads, const frame::FrameOptions& o) {
   f.loads = std::move(loads);
   return frame::analyse(f, o);
@@ -132,15 +113,6 @@ struct Channels {
     return std::ssize(sensors) - 1;
   }
 };
-
-/// By reading (columns) the true factors on unit_loads(): without a load there is what is always there.
-MatrixX true_factors(const FrameDescription& f, const measurement::Measurements& data) {
-  const MatrixX recorded = measurement::loads_of(data);
-  MatrixX out(recorded.rows() + 1, recorded.cols());
-  out.topRows(recorded.rows()) = f.load_gain * recorded;
-  out.bottomRows<1>() = VectorX::Ones(recorded.cols()).transpose() - out.topRows(recorded.rows()).colwise().sum();
-  return out;
-}
 
 /// By sensor (rows) and load case.
 MatrixX true_readings(const std::vector<const frame::FrameSensor*>& sensors, const FrameDescription& f,
@@ -265,6 +237,31 @@ void let_stick(const FrameDescription& f, const measurement::Measurements& data,
 }
 
 }  // namespace
+
+Named<LoadCase> unit_loads(const FrameDescription& f, const measurement::Measurements& data) {
+  Named<LoadCase> out;
+  for (const std::string& name : data.instruments.load_cases)
+    out.emplace_back("load." + name, named(f.loads, "load case", name, f.name));
+  for (const measurement::LoadChannel& c : measurement::load_channels(data)) {
+    if (c.name.starts_with("load.")) continue;
+    const std::size_t dot = c.name.rfind('.');
+    const auto component = std::find(frame::wrench_names.begin(), frame::wrench_names.end(), c.name.substr(dot + 1)) -
+                           frame::wrench_names.begin();
+    LoadCase unit;
+    unit.nodes.emplace_back(node_of(c.name.substr(0, dot)), Vector6::Unit(component));
+    out.emplace_back(c.name, std::move(unit));
+  }
+  out.emplace_back("always", LoadCase());
+  return out;
+}
+
+MatrixX true_factors(const FrameDescription& f, const measurement::Measurements& data) {
+  const MatrixX recorded = measurement::loads_of(data);
+  MatrixX out(recorded.rows() + 1, recorded.cols());
+  out.topRows(recorded.rows()) = f.load_gain * recorded;
+  out.bottomRows<1>() = VectorX::Ones(recorded.cols()).transpose() - out.topRows(recorded.rows()).colwise().sum();
+  return out;
+}
 
 std::vector<VectorX> predicted_readings(const FrameDescription& frame, const measurement::Measurements& data,
                                         Geometry geometry, const FrameNearby* near) {

@@ -20,6 +20,12 @@ namespace deflect::subject {
 std::vector<VectorX> predicted_readings(const frame::FrameDescription&, const measurement::Measurements&, Geometry,
                                         const class FrameNearby* near = nullptr);
 
+/// One case for each channel of load, in the order of load_channels(), and one for what is always there: misfits, heat,
+/// settlements.
+Named<frame::LoadCase> unit_loads(const frame::FrameDescription&, const measurement::Measurements&);
+/// By reading (columns) the true factors on unit_loads(): without a load there is what is always there.
+MatrixX true_factors(const frame::FrameDescription&, const measurement::Measurements&);
+
 /// What is known of a frame under the loads of measurements (known_frame.h), computed when it is first asked for.
 class FrameNearby {
  public:

@@ -28,10 +28,11 @@ enum class PlaceKind {
   load,
   load_cell,
   sensor,
+  node,  ///< of a frame, where nothing is drawn between it and the ground
 };
-inline constexpr std::array place_kind_names = {"drive", "joint",     "clamp", "member", "member end",
-                                                "line",  "platform",  "base",  "tool",   "support",
-                                                "load",  "load cell", "sensor"};
+inline constexpr std::array place_kind_names = {"drive", "joint",     "clamp",  "member", "member end",
+                                                "line",  "platform",  "base",   "tool",   "support",
+                                                "load",  "load cell", "sensor", "node"};
 
 /// A part of a group beside its first, as Place has it.
 struct OtherPart {

@@ -59,6 +59,13 @@ struct InnerSites {
   MatrixX response;  ///< by site: what passes more when another is deformed by a unit
 };
 
+/// A freedom in which a node of a frame moves under the loads, and what a force on it there does.
+struct NodeMotion {
+  Place place;         ///< the support or the spring between it and the ground, or else the node itself
+  VectorX by_reading;  ///< m or rad
+  VectorX moves;       ///< by sensor: what is recorded, by N or Nm
+};
+
 /// A number of the subject that varies from one built copy to another: the same in every pose, or of one pose only.
 struct Tolerance {
   std::string name;  ///< "modulus", "leg 3 base joint x", "pose 4 leg 1 slider"
@@ -127,6 +134,8 @@ class Standing {
   virtual std::vector<Site> sites(std::size_t) const { return {}; }
   /// Those of a subject without tool point; none where forces are not proportional to the loads.
   virtual InnerSites inner_sites(const measurement::Measurements&) const { return {}; }
+  /// Of a frame whose laws are linear.
+  virtual std::vector<NodeMotion> node_motions(const measurement::Measurements&) const { return {}; }
 
   /// Whether a reading depends on the loads before it: friction. Then the order of the readings matters.
   virtual bool has_history() const { return false; }
