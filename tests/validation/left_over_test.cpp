@@ -216,6 +216,21 @@ TEST(AtOnePlace, ACurveInFewReadingsIsNotSurelyTwoLaws) {
   for (const PlacedEffect& e : d.missing) EXPECT_EQ(subject::id_of(*e.effect->place), "elbow.rz") << e.effect->name;
 }
 
+// A ball joint of leg 5 rubs, and friction there is not among the candidates. That of other joints explains a part of
+// it, but none is named: what holds the motion of one joint loads no other one alike.
+TEST(AtOnePlace, FrictionThatNoLawDescribesIsAtItsJoint) {
+  const Mechanism m = test::device("haptic-6psu-ideal-joints");
+  const Mechanism real = test::with(m, "leg[5].ball_joint.ry",
+                                    "{law: friction, moment: 50 Nmm, stiffness: 1e6 Nmm/rad}", Edit::Action::append);
+  const std::vector<Effect> known = all_but("friction@leg.ball_joint.ry", m);
+  const Diagnosis d = diagnose(m, measured_on(real, "cycle"), known);
+  EXPECT_EQ(d.verdict, Verdict::unknown_effect);
+  EXPECT_TRUE(d.missing.empty());
+  ASSERT_FALSE(d.localised.empty());
+  EXPECT_EQ(d.localised.front().what, "leg 5 ball_joint ry, where something rubs");
+  EXPECT_GT(d.localised.front().probability, 0.9);
+}
+
 std::string cycloid_folder() { return test::source_dir() + "/validation/measurements/cycloid/"; }
 
 /// Loads as in a record of a cycloidal actuator, readings of one whose drive has play.

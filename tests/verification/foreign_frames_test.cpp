@@ -69,10 +69,15 @@ TEST_P(ForeignFrame, WhatIsHiddenIsNamedOrTied) {
     return;
   }
   if (truth.value("unknown", false)) {
-    // Nothing in the frame can do it: then no effect is named for it, least of all what only looks like it.
+    // No part of the frame can do it: then no effect is named for it, least of all what only looks like it, and the
+    // node is told.
     EXPECT_EQ(d.verdict, diagnosis::Verdict::unknown_effect) << said;
     for (const std::string& each : found)
       EXPECT_FALSE(is_the_other(truth.at("effect").get<std::string>(), each)) << said;
+    const std::string rubs = "friction@";
+    EXPECT_TRUE(std::any_of(d.localised.begin(), d.localised.end(), [&](const diagnosis::Localised& l) {
+      return rubs + subject::id_of(l.place) == truth.at("effect");
+    })) << said;
     return;
   }
   auto right = truth.at("acceptable").get<std::vector<std::string>>();

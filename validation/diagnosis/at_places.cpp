@@ -127,16 +127,17 @@ AtPlace explained_by(const Weighed& all, const LawsAtPlace& place, const VectorX
   if (whatever) add(whatever());
   out.spans.push_back(span_of(columns, residual));
   const std::vector<MatrixX> laws = std::move(columns);
-  const auto few_of = [&](const MatrixX& basis) {
+  const auto few_of = [&](const MatrixX& basis, bool rubs) {
     columns.clear();
     add(basis);
-    if (!columns.empty())
-      out.spans.push_back(span_of_few(statistics::side_by_side(columns, residual.size()), residual));
+    if (columns.empty()) return;
+    out.spans.push_back(span_of_few(statistics::side_by_side(columns, residual.size()), residual));
+    out.spans.back().rubs = rubs;
   };
-  if (friction) few_of(friction());
+  if (friction) few_of(friction(), true);
   for (const Curves kind : curves) {
     if (kind == Curves::finer_lines) {
-      few_of(curve(kind));
+      few_of(curve(kind), false);
       continue;
     }
     columns.clear();
@@ -185,7 +186,7 @@ std::string words_of(const AtPlace& p) {
   if (!p.best) {
     subject::Place place = p.place();
     place.leg = p.without_law->leg;
-    return effects::words_of(place) + ", by none of the laws";
+    return effects::words_of(place) + (p.most().rubs ? ", where something rubs" : ", by none of the laws");
   }
   const effects::PlacedEffect& e = p.best->effect;
   std::string out = e.effect->title;

@@ -50,6 +50,7 @@ struct AtPlace {
     double gain = 0;  ///< in χ²
     int dimension = 0;
     double log_ways = 0;  ///< ln of the number of spans from which it was chosen by its gain
+    bool rubs = false;    ///< it is of frictions
   };
   std::vector<Span> spans;
   /// Prior probability of each span. All places share it alike, and the single legs of a place share that of one place.

@@ -151,17 +151,17 @@ OnePlace one_place(const Weighed& all, const Candidates& candidates, const Selec
                              beside = at_places(all, s.effects, s.fit, candidates.threads());
   const AtPlace *place = likeliest(alone), *further = likeliest(beside);
   if (!place) return {};
-  const auto [gain, dimension, log_ways] = place->most();
-  const double left = std::min(null.chi2 - gain, s.fit.chi2 - (further ? further->most().gain : 0));
+  const AtPlace::Span& most = place->most();
+  const double left = std::min(null.chi2 - most.gain, s.fit.chi2 - (further ? further->most().gain : 0));
   const double noise = std::max(1.0, left / std::max(1.0, static_cast<double>(s.observations.numbers())));
   const double found = log_odds_of_all(candidates, s.effects, (null.chi2 - s.fit.chi2) / noise) +
                        (further ? std::max(0.0, further->log_odds(noise)) : 0);
   const double likelier = place->log_odds(noise) - found;
-  const double beyond = std::max(0.0, gain - (null.chi2 - s.fit.chi2)) / noise;
-  const auto freedom = std::max<Eigen::Index>(1, dimension - s.fit.signature.cols());
-  const double p_value = std::exp(log_ways) * statistics::chi_squared_tail(freedom, beyond) / place->prior;
+  const double beyond = std::max(0.0, most.gain - (null.chi2 - s.fit.chi2)) / noise;
+  const auto freedom = std::max<Eigen::Index>(1, most.dimension - s.fit.signature.cols());
+  const double p_value = std::exp(most.log_ways) * statistics::chi_squared_tail(freedom, beyond) / place->prior;
   return {&place->place(),
-          null.chi2 - gain,
+          null.chi2 - most.gain,
           null.chi2,
           likelier,
           std::min(1.0, p_value),
