@@ -40,9 +40,10 @@ Nearest nearest_entry(const Plan&, const Hidden&);
 double cosine(const Hidden&, const Hidden&);
 
 /// Length of what is left of what an effect changes, whitened, once other effects, none of those named, are taken out
-/// of it: the least of four ways. The four that take most of it off, one after the other; the two at one place that
+/// of it: the least of five ways. The four that take most of it off, one after the other; the two at one place that
 /// do; of the law of a group, the same law at each of its parts; of the law of a load, the same law at all other loads
-/// and an entry of the catalogue. Readings that tell no law from another (Plan::told()) do not count.
+/// and an entry of the catalogue; of a law with a shape of its own, the same law at another place. Readings that tell
+/// no law from another (Plan::told()) do not count.
 double beyond_others(const Plan&, const Hidden&, const std::vector<std::string>& left_out);
 
 /// What is left of a whitened change once the signatures of all effects, one left out, are taken out of it.

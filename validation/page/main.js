@@ -47,8 +47,8 @@ function guilt() {
   return {ambiguous: 'The best of the tied candidates acts here', unknown_effect: 'What was explained acts here'}[diagnosis.verdict] || 'What is missing acts here';
 }
 
-const listed = {members: 'member', supports: 'support', springs: 'spring', sensors: 'sensor', loads: 'load'};
-/** "member C2b", "start of beam_1", "support B": as the scene of a frame calls the parts of a place. */
+const listed = {members: 'member', supports: 'support', springs: 'spring', sensors: 'sensor', loads: 'load', nodes: 'node'};
+/** "member C2b", "start of beam_1", "support B", "node P1d": as the scene of a frame calls the parts of a place. */
 const partsOf = ({path, also = []}) => [path, ...also].map((p) => p.split('.')).filter(([list]) => listed[list])
   .map(([list, name, end]) => (list === 'members' && (end === 'start' || end === 'end') ? `${end} of ${name}` : `${listed[list]} ${name}`));
 
@@ -84,6 +84,8 @@ function machineFigure() {
   data.scene.tied = unknown.free.length ? unknown.free : data.scene.kind === 'frame' ? tiedParts() : [];
   if (unknown.free.length) Object.assign(data.scene, {tiedWords: unknown.all.length > 1 ? 'Something unknown acts at one of these' : 'Something unknown acts here', tiedNames: unknown.all});
   for (const foot of data.scene.kind === 'frame' ? data.scene.ground : []) foot.tied = data.scene.tied.includes(foot.name);
+  const nodes = data.scene.kind === 'frame' ? data.scene.nodes : {};
+  for (const part of data.scene.tied.filter((name) => name.startsWith('node ') && name.slice(5) in nodes)) data.scene.joints.push({leg: '', part, point: nodes[part.slice(5)], driven: false, guilty: false, tied: true});
   if (data.scene.kind === 'frame' && data.versions.length) return figure('machine', 'The frame under its loads', 'Drag to turn, scroll or pinch to zoom. Arrows with names: sensors.', attempt('The frame', () => machine(data.scene, data.versions[0], guilt())));
   if (data.scene.kind === 'frame') return figure('machine', 'The frame under its loads', 'Drag to turn, scroll or pinch to zoom.', attempt('The frame', () => machine(data.scene, null, '')));
   const version = data.versions[0];

@@ -109,6 +109,13 @@ Json springs_between(const FrameDescription& f, const FrameResult& r, const std:
   return out;
 }
 
+/// By name the point of each node.
+Json nodes_of(const FrameDescription& f, const FrameResult& r) {
+  Json out = Json::object();
+  for (const auto& [name, position] : f.nodes) out[name] = r.structure.nodes.find(name);
+  return out;
+}
+
 /// Along the member at the nodes of its elements; the value stands at one of them.
 void put_line_load(Json& arrows, const FrameDescription& f, const FrameResult& r, const std::string& name,
                    const frame::LineLoad& load) {
@@ -245,6 +252,7 @@ Json frame_scene_json(const FrameDescription& f, const FrameResult& result, cons
   for (const frame::Node& node : r.structure.model.nodes) pose["points_mm"].push_back(scene_position(node.position));
   put_members(scene, pose, f, r, guilty);
   scene["joints"] = springs_between(f, r, guilty);
+  scene["nodes"] = nodes_of(f, r);
   scene["sensors"] = sensors_of(f, guilty);
   for (const CaseResult& c : r.cases) pose["shapes"].push_back(shape_of(f, r, c));
   scene["poses"].push_back(std::move(pose));
