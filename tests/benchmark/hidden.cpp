@@ -208,20 +208,25 @@ double beyond_other_loads(const Plan::Told& told, const effects::Effect& e, cons
   return least;
 }
 
-/// The same with the law of the hidden effect at another place, with the same values. A law with a shape of its own may
-/// do there what it does here, as friction in two joints that always turn alike, and the shapes of a signature are few.
+/// The same with the law of the hidden effect at another place, with the same values, where it may do the same:
+/// friction in two joints that always turn alike, play of two that turn one link. A signature is of other values; the
+/// two places whose signatures come nearest are predicted.
 double beyond_law_elsewhere(const Plan& plan, const Plan::Told& told, const effects::EffectInstance& hidden,
                             const std::vector<std::string>& left_out) {
-  constexpr double alike = 0.9;  // cosine with a shape of the signature, from which it is predicted
-  double least = told.change.norm();
+  constexpr std::size_t predicted = 2;
+  std::vector<std::pair<double, const Signature*>> others;
   for (const Signature& s : told.signatures) {
     const effects::Effect& other = *s.effect.effect;
-    if (!s.shaped || &other == hidden.effect || law_of(other) != law_of(*hidden.effect) ||
-        other.parameters.size() != hidden.effect->parameters.size() ||
-        std::find(left_out.begin(), left_out.end(), other.name) != left_out.end() ||
-        (s.basis.transpose() * told.change).cwiseAbs().maxCoeff() < alike * told.change.norm())
-      continue;
-    const VectorX there = plan.told({s.effect, hidden.values}).change;
+    if (&other != hidden.effect && other.place && law_of(other) == law_of(*hidden.effect) &&
+        other.parameters.size() == hidden.effect->parameters.size() &&
+        std::find(left_out.begin(), left_out.end(), other.name) == left_out.end())
+      others.emplace_back((s.basis.transpose() * told.change).cwiseAbs().maxCoeff(), &s);
+  }
+  std::stable_sort(others.begin(), others.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  others.resize(std::min(predicted, others.size()));
+  double least = told.change.norm();
+  for (const auto& [along, other] : others) {
+    const VectorX there = plan.told({other->effect, hidden.values}).change;
     if (there.size() != told.change.size() || there.isZero(0)) continue;
     least = std::min(least, (told.change - there * (there.dot(told.change) / there.squaredNorm())).norm());
   }

@@ -42,7 +42,7 @@ double cosine(const Hidden&, const Hidden&);
 /// Length of what is left of what an effect changes, whitened, once other effects, none of those named, are taken out
 /// of it: the least of five ways. The four that take most of it off, one after the other; the two at one place that
 /// do; of the law of a group, the same law at each of its parts; of the law of a load, the same law at all other loads
-/// and an entry of the catalogue; of a law with a shape of its own, the same law at another place. Readings that tell
+/// and an entry of the catalogue; the same law at another place, with the same values. Readings that tell
 /// no law from another (Plan::told()) do not count.
 double beyond_others(const Plan&, const Hidden&, const std::vector<std::string>& left_out);
 

@@ -38,5 +38,22 @@ TEST(UnknownPage, MarksThePartsWhereItMayAct) {
   for (const char* part : {"screw", "wrist", "elbow"}) EXPECT_NE(parts.find(part), parts.npos) << legend;
 }
 
+// Something rubs at a node of a truss at which no part is drawn but its members (a set of foreign make).
+TEST(UnknownPage, MarksTheNodeWhereSomethingRubs) {
+  if (!page::pages_are_built()) GTEST_SKIP() << "built without pages";
+  const test::Folder folder;
+  const std::string data =
+      test::source_dir() + "/tests/verification/foreign_frames/truss-45_friction-node-P1d-uy_32.csv";
+  const test::Run found = test::deflect("diagnose truss-45 '" + data + "' --bootstrap 99 --report '" +
+                                        (folder / "page.html").string() + "'");
+  ASSERT_EQ(found.code, 0) << found.out;
+  EXPECT_NE(found.out.find("'node P1d uy, where something rubs'"), found.out.npos) << found.out;
+  const auto seen = test::used_page(folder / "page.html", folder);
+  ASSERT_TRUE(seen) << "the browser said nothing";
+  EXPECT_EQ(seen->at("failures"), nlohmann::json::array());
+  const auto legend = seen->at("legend").get<std::string>();
+  EXPECT_NE(legend.find("Something unknown acts here: node P1d"), legend.npos) << legend;
+}
+
 }  // namespace
 }  // namespace deflect
