@@ -11,6 +11,7 @@
 
 #include "msa/base/error.h"
 #include "msa/base/index.h"
+#include "validation/measurement/in_order.h"
 #include "validation/parallel/cases.h"
 #include "validation/prediction/instruments.h"
 
@@ -25,20 +26,11 @@ std::vector<double> ranks(const measurement::Measurements& m, const std::string&
   return rank;
 }
 
-/// The readings of a pose in the order in which they were taken.
-std::vector<std::size_t> ordered(const measurement::PoseGroup& group, const measurement::Measurements& m) {
-  std::vector<std::size_t> order = group.readings;
-  if (m.readings[order.front()].sequence)
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return *m.readings[a].sequence < *m.readings[b].sequence; });
-  return order;
-}
-
 /// The poses in the order of their first readings in time. Where a pose is come back to, its readings are one approach.
 std::vector<std::size_t> poses_in_sequence(const measurement::Measurements& m) {
   std::vector<std::size_t> order(m.poses.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto begun = [&](std::size_t p) { return *m.readings[ordered(m.poses[p], m).front()].sequence; };
+  const auto begun = [&](std::size_t p) { return *m.readings[measurement::in_order(m.poses[p], m).front()].sequence; };
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return begun(a) < begun(b); });
   return order;
 }
@@ -242,7 +234,7 @@ Predicted predicted(const Mechanism& m, const std::vector<Configuration>& machin
       if (is_new) found->second = machine.move(reading, conditions);
       return found->second;
     };
-    for (const std::size_t i : ordered(data.poses[p], data)) {
+    for (const std::size_t i : measurement::in_order(data.poses[p], data)) {
       if (passed_over(i)) continue;
       const measurement::Reading& reading = data.readings[i];
       const Motion& r = answer(reading);

@@ -11,6 +11,7 @@
 #include "msa/base/index.h"
 #include "msa/mechanism/device_file.h"
 #include "msa/mechanism/place.h"
+#include "validation/measurement/in_order.h"
 #include "validation/prediction/rig.h"
 
 namespace deflect::subject {
@@ -186,15 +187,6 @@ double deflection_of(const Law& law, double force) {
   return analytic::deflection(law, force);
 }
 
-/// The readings of a pose in the order in which they were taken.
-std::vector<std::size_t> taken(const measurement::PoseGroup& group, const measurement::Measurements& data) {
-  std::vector<std::size_t> out = group.readings;
-  if (data.readings[out.front()].sequence)
-    std::sort(out.begin(), out.end(),
-              [&](std::size_t a, std::size_t b) { return *data.readings[a].sequence < *data.readings[b].sequence; });
-  return out;
-}
-
 struct Rig {
   prediction::TrueLoads loads;
   prediction::RecordedMotion sensor;
@@ -251,7 +243,7 @@ class MachineTransmissions final : public Transmissions {
     for (std::size_t p = 0; p < data.poses.size(); ++p) {
       const std::vector<Vector6> all = freedoms(p, place, leg, kind);
       if (all.empty()) return std::nullopt;
-      for (const std::size_t i : taken(data.poses[p], data)) {
+      for (const std::size_t i : measurement::in_order(data.poses[p], data)) {
         const measurement::Reading& r = data.readings[i];
         const Vector6 F = place.kind == PlaceKind::tool ? rigs_[p].loads.through_tool(r) : rigs_[p].loads.at_T(r);
         Vector6 d = Vector6::Zero();
