@@ -154,5 +154,43 @@ TEST(FrameSites, NoResidualForceWhereStaticsDeterminesIt) {
   EXPECT_LT(determinate, 1e-6 * most);
 }
 
+// A soft spring between a node and the ground changes what a sensor records by −k times the node's motion times what a
+// unit force there does, to first order in k. A newton per metre is little beside what these frames hold with.
+TEST(NodeMotions, TellWhatASoftSpringAtTheNodeChanges) {
+  for (const char* name : {"truss-45", "portal-semi-rigid", "lattice-girder", "beam-on-springs"}) {
+    const Subject s = built_in(name);
+    const measurement::Measurements data = readings_of(s, s);
+    const auto standing = s.stand(data);
+    prediction::PredictionOptions linear;
+    linear.geometry = Geometry::linear;
+    const std::vector<VectorX> drawn = standing->predict(data, linear, parallel::alone);
+    const std::vector<subject::NodeMotion> all = standing->node_motions(data);
+    ASSERT_FALSE(all.empty()) << name;
+    std::size_t at_nodes = 0;
+    for (const subject::NodeMotion& node : all) {
+      if (node.place.kind != subject::PlaceKind::node) continue;
+      const std::size_t freedom = node.place.freedoms.front();
+      const double k = freedom < 3 ? 1 : 1e-2;  // N/m, Nm/rad
+      frame::FrameDescription held = *s.frame();
+      frame::FrameSpring spring;
+      spring.node = node.place.path.substr(std::string("nodes.").size());
+      spring.stiffness[freedom] = k;
+      held.springs.emplace_back("soft", spring);
+      const std::vector<VectorX> after = Subject(held).stand(data)->predict(data, linear, parallel::alone);
+      double apart = 0, size = 0, rounding = 0;
+      for (std::size_t i = 0; i < after.size(); ++i) {
+        const VectorX told = -k * node.by_reading(as_index(i)) * node.moves;
+        apart += ((after[i] - drawn[i]).tail(told.size()) - told).squaredNorm();
+        size += told.squaredNorm();
+        rounding += drawn[i].squaredNorm();
+      }
+      EXPECT_LE(std::sqrt(apart), 1e-2 * std::sqrt(size) + 1e-12 * std::sqrt(rounding))
+          << name << " " << subject::id_of(node.place);
+      ++at_nodes;
+    }
+    EXPECT_GT(at_nodes, 3u) << name;
+  }
+}
+
 }  // namespace
 }  // namespace deflect

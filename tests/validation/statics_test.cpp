@@ -100,7 +100,7 @@ TEST_P(StaticsAtPlaces, AgreesWithThePredictionOfALittleFriction) {
       return out ? joined({out->begin(), out->end()}) : VectorX(0);
     };
     double most = 0;
-    const VectorX sticks = told([&] {
+    told([&] {
       return [&most](double x) {
         most = std::max(most, std::abs(x));
         return x;

@@ -316,7 +316,7 @@ TEST(PlacesWithoutLaw, AreThoseOfTheMachineWhereNoLawActs) {
   std::vector<std::string> expected = {"column", "fore_link", "load", "quill", "sensor", "upper_link"};
   for (const subject::Place& p : l.o.subject().places())
     if (p.freedoms.size() == 1 && p.others.empty() && p.hold != subject::Hold::rigid) expected.push_back(p.part);
-  expected.erase(std::find(expected.begin(), expected.end(), "wrist"));  // which turns under no load of these readings
+  std::erase(expected, "wrist");  // which turns under no load of these readings
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(all, expected);
   EXPECT_EQ(without([](const effects::Effect& e) { return e.name != "factor@fore_link"; }),

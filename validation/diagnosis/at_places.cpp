@@ -183,9 +183,9 @@ std::vector<std::size_t> worth_finer_lines(const std::vector<std::size_t>& curve
 
 /// The title of the likeliest law in the middle of a sentence, with the leg's number where it is one.
 std::string words_of(const AtPlace& p) {
-  if (!p.best) {
+  if (!p.best || p.most().rubs) {
     subject::Place place = p.place();
-    place.leg = p.without_law->leg;
+    place.leg = p.best ? p.best->effect.leg : p.without_law->leg;
     return effects::words_of(place) + (p.most().rubs ? ", where something rubs" : ", by none of the laws");
   }
   const effects::PlacedEffect& e = p.best->effect;

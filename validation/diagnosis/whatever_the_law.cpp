@@ -43,7 +43,8 @@ Changes::Curve rubbing(double way) {
 /// What rubs beside the freedom of a place in whatever way is close to a sum of forces that each hold until they slip
 /// (the Prandtl–Ishlinskii model, W. D. Iwan, J. Appl. Mech. 33, 1966): after sixteen ways, each 0.7 of
 /// the one before, and one that never slips. Relaxed at each pose.
-MatrixX any_friction(const Changes& changes, const subject::Place& place, std::optional<int> leg) {
+MatrixX any_friction(const Changes& changes, const subject::Place& place, std::optional<int> leg,
+                     Eigen::Index numbers) {
   std::vector<MatrixX> out;
   const auto add = [&](const std::function<Changes::Curve()>& at_rest) {
     const std::optional<VectorX> change = changes.by_holding(place, leg, at_rest);
@@ -59,7 +60,7 @@ MatrixX any_friction(const Changes& changes, const subject::Place& place, std::o
   });
   for (int i = 1; most > 0 && i <= ways_of_friction; ++i)
     add([way = most * std::pow(0.5, 0.5 * i)] { return rubbing(way); });
-  return statistics::side_by_side(out, out.empty() ? 0 : out.front().rows());
+  return statistics::side_by_side(out, numbers);
 }
 
 }  // namespace
@@ -88,7 +89,9 @@ AnyCurve WhateverTheLaw::curve_at(const effects::PlacedEffect& e, std::shared_pt
 Columns WhateverTheLaw::friction_at(const subject::Place& place, std::optional<int> leg,
                                     std::shared_ptr<const Observations> o) const {
   if (!changes_->may_be_held(place)) return nullptr;
-  return [changes = changes_, place, leg, o = std::move(o)] { return as_seen(*o, any_friction(*changes, place, leg)); };
+  return [changes = changes_, place, leg, o = std::move(o)] {
+    return as_seen(*o, any_friction(*changes, place, leg, std::ssize(o->comparison().study.values)));
+  };
 }
 
 }  // namespace deflect::diagnosis
