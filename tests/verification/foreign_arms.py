@@ -86,6 +86,8 @@ class Arm:
         else:
             about = own / k
         tilt = 1 / self.bearing[i] if self.bearing[i] else 0.0
+        if (factor := self.value("factor@%s.tilt" % name)) is not None:
+            tilt /= factor
         if (c := self.value("linear@%s.tilt" % name)) is not None:
             tilt += 1 / c
         return np.array([tilt * m[0], tilt * m[1], about + extra])
@@ -189,7 +191,7 @@ SETS = [
     ("healthy-1", {}, {}, False), ("healthy-2", {}, {}, False), ("healthy-3", {}, {"cycles": True}, False),
     ("doubled-1", {}, {"scale": 2.0}, False), ("doubled-2", {}, {"scale": 2.0}, False),
     ("elbow-softer", {"factor@elbow.rz": 0.8}, {}, False),
-    ("shoulder-bearing", {"linear@shoulder.tilt": 1.5e6}, {}, False),
+    ("shoulder-bearing", {"factor@shoulder.tilt": 3 / 7}, {}, False),
     ("elbow-bearing", {"linear@elbow.tilt": 2e6}, {}, False),
     ("roll-bearing", {"linear@roll.tilt": 6e5}, {}, False),
     ("elbow-play", {"clearance@elbow.rz": 2e-5}, {}, False), ("turret-play", {"clearance@turret.rz": 3e-5}, {}, False),

@@ -63,7 +63,7 @@ const PlaceLaw of_places[] = {
       "Stiffen {}, preload it, or take its stiffness into the model."},
      OneLeg::at_parts_alike},
     {"factor",
-     [](const subject::Place& p) { return p.one_stiffness && single(p); },
+     [](const subject::Place& p) { return p.one_stiffness; },
      "is not as stiff as described",
      [](const subject::Place& p) {
        return std::vector<EffectParameter>{{"factor", "", 0.9, of_frame(p) ? 1e-6 : 0.02, 50, true, 1,

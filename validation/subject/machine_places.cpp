@@ -84,7 +84,7 @@ class Places {
 
  private:
   void pair(const Place& a, const Place& b) {
-    if (a.hold != Hold::rigid || b.hold != Hold::rigid || a.kind != b.kind) return;
+    if (a.hold == Hold::free || a.hold != b.hold || a.one_stiffness != b.one_stiffness || a.kind != b.kind) return;
     Place both = a;
     both.freedoms.push_back(b.freedoms.front());
     all.push_back(std::move(both));
