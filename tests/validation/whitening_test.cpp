@@ -82,6 +82,11 @@ void expect_close(const MatrixX& found, const MatrixX& wanted, double times = 1)
   EXPECT_LT((found - wanted).norm(), times * kept_to * wanted.norm());
 }
 
+void expect_log_determinant(double found, const Eigen::LLT<MatrixX>& covariance) {
+  const double wanted = 2 * covariance.matrixLLT().diagonal().array().log().sum();
+  EXPECT_NEAR(found, wanted, kept_to * std::max(1.0, std::abs(wanted)));
+}
+
 TEST(PartedColumns, AreTheMatrixThatTheyStandFor) {
   for (const Errors& e : random_errors()) {
     Random random(7);
@@ -104,6 +109,7 @@ TEST(Whitening, WeighsByTheInverseOfTheDenseCovariance) {
     expect_close(white.undo_shared(white.of_shared(X)), X);
     expect_close(white.of_shared(white.within_groups(X)), white(X));
     expect_close(white.undo(white(X)), X);
+    expect_log_determinant(white.log_determinant(), dense);
   }
 }
 
@@ -134,6 +140,7 @@ TEST(Whitening, NumbersWithoutACovarianceDoNotCount) {
   expect_close(back(others, Eigen::all), X(others, Eigen::all));
   const MatrixX kept = X(others, Eigen::all), covariance = e.covariance()(others, others);
   expect_close(white.transpose() * white, kept.transpose() * covariance.llt().solve(kept));
+  expect_log_determinant(Whitening(e.blocks, e.A).log_determinant(), covariance.llt());
 }
 
 TEST(Whitening, TheOrderOfRowsAndGroupsDoesNotMatter) {

@@ -182,7 +182,8 @@ class Comparing {
       left_ -= shape_;
     }
     take_noise(all);
-    Outliers outliers = gross_outliers(s, c.tolerances.A, c.sigma, left_, all, work_.threads);
+    c.study.load_errors = with_open_play(s, s.load_errors, s.open_play, c.tolerances.A, c.sigma, left_, work_.threads);
+    Outliers outliers = gross_outliers(s, s.load_errors, c.tolerances.A, c.sigma, left_, all, work_.threads);
     aside_ = std::move(outliers.aside);
     uncertainty_ = std::move(outliers.uncertainty);
     take_zero();

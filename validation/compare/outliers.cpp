@@ -6,6 +6,7 @@
 
 #include "msa/base/index.h"
 #include "validation/statistics/columns.h"
+#include "validation/statistics/open_play.h"
 
 namespace deflect::compare {
 
@@ -19,10 +20,11 @@ bool many(const std::vector<bool>& aside) {
   return 20 * count > aside.size() && !(count == 1 && aside.size() >= 10);
 }
 
-Outliers outliers_beside(const ResidualStudy& s, const statistics::PartedColumns& A, const std::vector<double>& sigma,
-                         const VectorX& residual, const MatrixX& patterns, int threads) {
+Outliers outliers_beside(const ResidualStudy& s, const statistics::LoadErrors& loads,
+                         const statistics::PartedColumns& A, const std::vector<double>& sigma, const VectorX& residual,
+                         const MatrixX& patterns, int threads) {
   const auto without = [&](const std::vector<bool>& aside) {
-    return statistics::Uncertainty(A, s.values, sigma, s.load_errors, aside, threads);
+    return statistics::Uncertainty(A, s.values, sigma, loads, aside, threads);
   };
   std::vector<bool> aside(s.data->readings.size(), false);
   std::optional<statistics::Uncertainty> uncertainty;
@@ -36,7 +38,7 @@ Outliers outliers_beside(const ResidualStudy& s, const statistics::PartedColumns
     std::vector<double> worst(aside.size(), 0);
     for (std::size_t i = 0; i < s.values.size(); ++i) {
       const measurement::MeasuredValue& v = s.values[i];
-      const double scatter = std::hypot(sigma[i], s.load_errors.deviation(v));
+      const double scatter = std::hypot(sigma[i], loads.deviation(v));
       worst[v.reading] = std::max(worst[v.reading], std::abs(left(as_index(i))) / scatter);
     }
     std::vector<double> sorted = worst;
@@ -52,18 +54,30 @@ Outliers outliers_beside(const ResidualStudy& s, const statistics::PartedColumns
 
 }  // namespace
 
-Outliers gross_outliers(const ResidualStudy& s, const statistics::PartedColumns& A, const std::vector<double>& sigma,
-                        const VectorX& residual, const MatrixX& patterns, int threads) {
-  Outliers found = outliers_beside(s, A, sigma, residual, patterns, threads);
+Outliers gross_outliers(const ResidualStudy& s, const statistics::LoadErrors& loads, const statistics::PartedColumns& A,
+                        const std::vector<double>& sigma, const VectorX& residual, const MatrixX& patterns,
+                        int threads) {
+  Outliers found = outliers_beside(s, loads, A, sigma, residual, patterns, threads);
   if (s.standing->has_tool_point() || !many(found.aside)) return found;
   std::vector<MatrixX> columns = {linear_answers(s)};
   if (patterns.cols() > 0) columns.push_back(patterns);
   const MatrixX all = statistics::side_by_side(columns, residual.size());
-  Outliers fewer = outliers_beside(s, A, sigma, residual, all, threads);
+  Outliers fewer = outliers_beside(s, loads, A, sigma, residual, all, threads);
   return std::count(fewer.aside.begin(), fewer.aside.end(), true) <
                  std::count(found.aside.begin(), found.aside.end(), true)
              ? std::move(fewer)
              : std::move(found);
+}
+
+statistics::LoadErrors with_open_play(const ResidualStudy& s, const statistics::LoadErrors& loads,
+                                      const std::vector<MatrixX>& play, const statistics::PartedColumns& A,
+                                      const std::vector<double>& sigma, const VectorX& residual, int threads) {
+  statistics::LoadErrors without = loads.with_play({});
+  if (play.empty()) return without;
+  statistics::LoadErrors with = loads.with_play(play);
+  const Outliers beside = gross_outliers(s, with, A, sigma, residual, {}, threads);
+  const statistics::Uncertainty placed(A, s.values, sigma, without, beside.aside, threads);
+  return statistics::is_anywhere_in_play(beside.uncertainty, placed, residual) ? with : without;
 }
 
 }  // namespace deflect::compare

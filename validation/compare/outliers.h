@@ -19,7 +19,14 @@ struct Outliers {
   std::vector<bool> aside;
   statistics::Uncertainty uncertainty;  ///< of the readings kept
 };
-Outliers gross_outliers(const ResidualStudy&, const statistics::PartedColumns& A, const std::vector<double>& sigma,
-                        const VectorX& residual, const MatrixX& patterns, int threads = 1);
+Outliers gross_outliers(const ResidualStudy&, const statistics::LoadErrors&, const statistics::PartedColumns& A,
+                        const std::vector<double>& sigma, const VectorX& residual, const MatrixX& patterns,
+                        int threads = 1);
+
+/// Errors of loads, with these of play (open_play.h) beside them where the residual is likelier so, readings that are
+/// gross outliers beside them set aside; without any where it is not.
+statistics::LoadErrors with_open_play(const ResidualStudy&, const statistics::LoadErrors&,
+                                      const std::vector<MatrixX>& play, const statistics::PartedColumns& A,
+                                      const std::vector<double>& sigma, const VectorX& residual, int threads = 1);
 
 }  // namespace deflect::compare

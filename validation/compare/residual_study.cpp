@@ -9,6 +9,7 @@
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
 #include "validation/parallel/cases.h"
+#include "validation/statistics/open_play.h"
 
 namespace deflect::compare {
 namespace {
@@ -64,6 +65,7 @@ ResidualStudy residual_study(const subject::Subject& subject, const measurement:
   s.load_errors = {subject, *s.standing, data, s.predicted};
   statistics::take_off_load_errors(s.values, s.load_errors, data);
   s.floating = std::move(predicted.floating);
+  if (!s.floating.at_readings.empty()) s.open_play = statistics::open_play(*s.standing, data);
   const std::size_t poses = s.standing->poses();
   s.sites.resize(poses);
   s.compliance.resize(poses);

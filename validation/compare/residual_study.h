@@ -19,8 +19,9 @@ struct ResidualStudy {
   std::vector<measurement::MeasuredValue> values;     ///< the measured numbers
   MatrixX loads;                                      ///< by load channel and reading (loads_of)
   std::vector<VectorX> predicted;                     ///< of all channels (Standing::predict)
-  statistics::LoadErrors load_errors;                 ///< of `predicted`
+  statistics::LoadErrors load_errors;                 ///< of `predicted`; in a comparison with those of play that count
   prediction::Floating floating;                      ///< with `predicted`
+  std::vector<MatrixX> open_play;                     ///< what that may do to readings (open_play.h)
   std::vector<VectorX> deformed_shape;                ///< finite − linear geometry; empty: in `predicted`, or unknown
   std::vector<std::vector<subject::Site>> sites;      ///< by pose
   subject::InnerSites inner;                          ///< of a subject without tool point

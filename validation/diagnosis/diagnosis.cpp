@@ -301,7 +301,7 @@ void conclude(Diagnosis& d, Explained e, const FirstStep& told, const measuremen
   d.final = quality(seen, d.missing, d.fit);
   d.strained = seen.strained(subject_with(seen, d.missing, d.fit.values));
   d.set_aside = seen.set_aside();
-  d.set_aside_in_play = seen.set_aside_in_play();
+  d.in_play = seen.in_play();
 }
 
 Diagnosis diagnosed(const Observations& o, const measurement::Measurements& data,

@@ -58,8 +58,8 @@ struct Diagnosis {
   double noise_floor = 0;                                          ///< σ of a reading, SI
   double tolerance_scale = 1;  ///< apparent size of the machine's tolerances over that declared
   std::size_t readings = 0;
-  std::size_t set_aside = 0;          ///< readings that are gross outliers given what was found
-  std::size_t set_aside_in_play = 0;  ///< of these, the ones at which the load leaves play of what was found open
+  std::size_t set_aside = 0;  ///< readings that are gross outliers given what was found
+  std::size_t in_play = 0;    ///< readings whose load leaves play of that open, and that may stand anywhere in it
   bool unexplained = false;
   double log_odds_unknown = 0;                           ///< ln of the odds of something unknown beside what was found
   double share_unexplained = 0;                          ///< of the misfit beyond noise and tolerances

@@ -7,6 +7,7 @@
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
 #include "validation/compare/outliers.h"
+#include "validation/statistics/open_play.h"
 
 namespace deflect::diagnosis {
 namespace {
@@ -45,16 +46,10 @@ std::optional<VectorX> deformed_shape_of(const compare::ResidualStudy& s, const 
       .value;
 }
 
-/// Whether so many readings may be set aside as gross outliers: one in twenty, but of a few readings one as well. Where
-/// a load leaves play open, tolerances too small to be seen otherwise say where it stands: a third of these may be.
-bool are_few(const std::vector<bool>& aside, const std::vector<bool>& open) {
-  std::size_t surprising = 0, floating = 0, in_play = 0;
-  for (std::size_t i = 0; i < aside.size(); ++i) {
-    const bool floats = !open.empty() && open[i];
-    floating += floats ? 1 : 0;
-    if (aside[i]) ++(floats ? in_play : surprising);
-  }
-  return 3 * in_play <= floating && (20 * surprising <= aside.size() || (surprising == 1 && aside.size() >= 10));
+/// Whether so many readings may be set aside as gross outliers: one in twenty, but of a few readings one as well.
+bool are_few(const std::vector<bool>& aside) {
+  const auto count = as_size(std::count(aside.begin(), aside.end(), true));
+  return 20 * count <= aside.size() || (count == 1 && aside.size() >= 10);
 }
 
 }  // namespace
@@ -144,12 +139,6 @@ std::shared_ptr<const WhitenedFamilies> Observations::whitened_patterns() const 
 }
 
 std::size_t Observations::set_aside() const { return as_size(std::count(aside_.begin(), aside_.end(), true)); }
-
-std::size_t Observations::set_aside_in_play() const {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < at_play_.size(); ++i) count += aside_[i] && at_play_[i] ? 1 : 0;
-  return count;
-}
 
 std::shared_ptr<const subject::Standing> Observations::stand(const subject::Subject& subject) const {
   return subject.stand(*comparison_->study.data, comparison_->study.standing.get());
@@ -254,20 +243,23 @@ std::vector<std::pair<std::string, double>> Observations::strained(const subject
 Observations Observations::granted(const subject::Subject& subject) const {
   Observations out = *this;
   const compare::ResidualStudy& s = comparison_->study;
-  out.at_play_.clear();
   Linear own = linear(subject);
+  std::vector<MatrixX> play;
+  if (!own.floating.at_readings.empty()) play = statistics::open_play(*stand(subject), *s.data);
   if (std::optional<VectorX> shape = deformed_shape_of(s, subject, own.values)) {
     out.shape_ = std::move(*shape);
     out.in_linear_ = std::move(own.values);
     out.floating_ = std::move(own.floating);
     out.bent_ = out.bent_of(subject);
-    for (std::size_t i = 0; i < s.data->readings.size(); ++i) out.at_play_.push_back(out.floating_.at(i));
   }
   out.count_shape();
   out.move_tolerances(subject);
-  const std::vector<bool> aside =
-      compare::gross_outliers(s, out.A_, comparison_->sigma, out.residual(subject), {}).aside;
-  out.weigh(are_few(aside, out.at_play_) ? aside : aside_);
+  const VectorX left = out.residual(subject);
+  const std::vector<double>& sigma = comparison_->sigma;
+  out.load_errors_ = std::make_shared<const statistics::LoadErrors>(
+      compare::with_open_play(s, *load_errors_, play, out.A_, sigma, left));
+  const std::vector<bool> aside = compare::gross_outliers(s, *out.load_errors_, out.A_, sigma, left, {}).aside;
+  out.weigh(are_few(aside) ? aside : aside_);
   return out;
 }
 
@@ -314,7 +306,7 @@ Observations Observations::weighed_for(const subject::Subject& subject) const {
     return statistics::LoadErrors(subject, *standing, *s.data, in_linear_geometry(s, *standing).readings);
   });
   if (!load_errors) return out;
-  out.load_errors_ = std::make_shared<const statistics::LoadErrors>(std::move(*load_errors));
+  out.load_errors_ = std::make_shared<const statistics::LoadErrors>(load_errors->with_play(load_errors_->of_play()));
   out.move_tolerances(subject);
   out.weigh(aside_);
   return out;

@@ -34,8 +34,9 @@ class Observations {
   /// up to a constant that is the same in all copies with the same readings. Zeros of readings and the size of the
   /// deformed shape's contribution are fitted.
   std::vector<double> log_likelihood_of_scales(const subject::Subject&, const std::vector<double>& scales) const;
-  std::size_t set_aside() const;          ///< readings
-  std::size_t set_aside_in_play() const;  ///< of these, where the load leaves play of the granted subject open
+  std::size_t set_aside() const;  ///< readings
+  /// Readings whose load leaves play open and that may stand anywhere in it (open_play.h).
+  std::size_t in_play() const { return load_errors_->readings_in_play(); }
   const std::vector<bool>& aside() const { return aside_; }  ///< by reading
 
   /// Measured − predicted for a subject, m and rad. The prediction is that of linear geometry plus shape_for() the
@@ -78,7 +79,8 @@ class Observations {
   /// A copy for which this subject counts as right: what its tolerances do and the contribution of the deformed shape
   /// are computed for it (a missing member changes what its neighbours' tolerances do, a payload what those of drives
   /// do), and readings that are gross outliers to it are set aside, unless they are more than one in twenty; one of ten
-  /// or more may be, and a third of those whose load leaves play open.
+  /// or more may be. Readings whose load leaves its play open may stand anywhere in it where that is likelier than
+  /// where the deformed shape puts them (open_play.h).
   Observations granted(const subject::Subject&) const;
   /// How far the contribution of the deformed shape may change where this subject counts as right instead of the one
   /// that does, and is like it: the norm in σ of noise of the whole. No value moves by more than about so many of its
@@ -141,7 +143,6 @@ class Observations {
   VectorX bent_;                   // shape_ without where it puts floating play
   VectorX in_linear_;              // prediction in linear geometry of the subject whose deformed shape is granted
   prediction::Floating floating_;  // play in that subject
-  std::vector<bool> at_play_;      // by reading, in the last granted subject; empty: nowhere
   bool true_geometry_ = false;
 };
 

@@ -260,6 +260,7 @@ std::string compare_report(const compare::Comparison& c) {
   if (c.pure_error)
     out += fmt::format("replicates scatter by {:.2f} {} ({} degrees of freedom)\n", fine * c.pure_error->sigma, unit,
                        c.pure_error->degrees_of_freedom);
+  out += in_play_words(c.study.load_errors.readings_in_play(), c.readings);
   if (!c.set_aside.empty())
     out += fmt::format("set aside as gross outliers: {}, {} {}\n", counted(c.set_aside.size(), "reading"),
                        c.set_aside.size() == 1 ? "line" : "lines", fmt::join(c.set_aside, ", "));
@@ -313,6 +314,7 @@ std::string compare_json(const compare::Comparison& c) {
   j["mistakes"] = mistakes_json(c.mistakes);
   if (Json inside = inner_sites_json(c); !inside.is_null()) j["inside"] = std::move(inside);
   j["set_aside_lines"] = c.set_aside;
+  j["in_play"] = c.study.load_errors.readings_in_play();
   return json::json_text(j);
 }
 

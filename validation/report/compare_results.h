@@ -11,7 +11,8 @@ namespace deflect::report {
 std::string compare_report(const compare::Comparison&);
 
 /// {"device", "data", "readings", "poses", "baseline": {"rmse_mm", "held_out_rmse_mm", "chi2_per_dof", …},
-/// "findings": […], "tests": […], "patterns": […], "errors": {…}, "looks_like": […], "set_aside_lines": […]}.
+/// "findings": […], "tests": […], "patterns": […], "errors": {…}, "looks_like": […], "set_aside_lines": […], "in_play":
+/// …}.
 std::string compare_json(const compare::Comparison&);
 
 /// Tables: a row per reading with measured, predicted, residual, its σ and the sites' forces; errors by group; tests.

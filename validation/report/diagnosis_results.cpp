@@ -187,6 +187,7 @@ std::string diagnosis_report(const diagnosis::Diagnosis& d, const std::string& d
     out += fmt::format("the machine's tolerances look {:.1f} times as large as declared and count so\n",
                        d.tolerance_scale);
   if (d.set_aside > 0) out += fmt::format("readings set aside as gross outliers: {}\n", d.set_aside);
+  out += in_play_words(d.in_play, d.readings);
   if (!d.strained.empty())
     out += fmt::format("tolerances beyond two standard deviations: {}\n", strained_words(d.strained));
   return out + left_out_words(d.left_out) + "\n" + detectable_table(d.detectable);
@@ -262,6 +263,7 @@ std::string diagnosis_json(const diagnosis::Diagnosis& d) {
   j["tolerance_scale"] = d.tolerance_scale;
   j["readings"] = d.readings;
   j["set_aside"] = d.set_aside;
+  j["in_play"] = d.in_play;
   j["strained_tolerances"] = strained_json(d.strained);
   j["detectable"] = detectable_json(d.detectable);
   j["left_out"] = left_out_json(d.left_out);

@@ -144,16 +144,23 @@ std::string nothing_missing_words(const diagnosis::Diagnosis& d) {
 
 }  // namespace
 
-std::string outlier_words(std::size_t set_aside, std::size_t readings, std::size_t in_play) {
+std::string outlier_words(std::size_t set_aside, std::size_t readings) {
   const double percent =
       as_printed(100 * static_cast<double>(set_aside) / static_cast<double>(std::max<std::size_t>(1, readings)), 1);
   if (!(percent > headline_of_outliers)) return "";
-  const std::string count = fmt::format("{} of {} readings ({:.1f} %)", set_aside, readings, percent);
-  if (in_play == set_aside)
-    return count +
-           " are set aside: their loads leave play open, and tolerances decide where in it the machine stands. ";
-  return count + " are gross outliers and are set aside: look at them first, what follows rests on the others. " +
-         (in_play > 0 ? fmt::format("At {} of them the load leaves play open. ", in_play) : "");
+  return fmt::format(
+      "{} of {} readings ({:.1f} %) are gross outliers and are set aside: look at them first, what follows rests on "
+      "the others. ",
+      set_aside, readings, percent);
+}
+
+std::string in_play_words(std::size_t in_play, std::size_t readings) {
+  if (in_play == 0) return "";
+  return fmt::format(
+      "at {} of {} readings the load leaves play open: forces too small to be known say where in it the machine "
+      "stands, "
+      "which counts as unknown there\n",
+      in_play, readings);
 }
 
 std::string verdict_words(const compare::Comparison& c) {
@@ -186,7 +193,7 @@ std::string verdict_words(const compare::Comparison& c) {
 
 std::string verdict_words(const diagnosis::Diagnosis& d) {
   if (diagnosis::is_mistaken(d)) return first_of_all(d.mistakes);
-  const std::string outliers = outlier_words(d.set_aside, d.readings, d.set_aside_in_play);
+  const std::string outliers = outlier_words(d.set_aside, d.readings);
   const std::string names = joined_titles(d.missing, titled_with_id);
   switch (d.verdict) {
     case diagnosis::Verdict::nothing_missing:
@@ -217,7 +224,7 @@ std::string verdict_words(const diagnosis::Diagnosis& d) {
 
 std::string headline_words(const diagnosis::Diagnosis& d) {
   if (diagnosis::is_mistaken(d)) return verdict_words(d);
-  const std::string outliers = outlier_words(d.set_aside, d.readings, d.set_aside_in_play);
+  const std::string outliers = outlier_words(d.set_aside, d.readings);
   switch (d.verdict) {
     case diagnosis::Verdict::nothing_missing:
       return verdict_words(d);

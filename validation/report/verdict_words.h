@@ -17,8 +17,11 @@ std::string verdict_words(const diagnosis::Diagnosis&);
 std::string headline_words(const diagnosis::Diagnosis&);
 
 /// "37 of 720 readings (5.1 %) are gross outliers …" where they are more than one in twenty; empty otherwise.
-/// `in_play`: as Diagnosis::set_aside_in_play.
-std::string outlier_words(std::size_t set_aside, std::size_t readings, std::size_t in_play = 0);
+std::string outlier_words(std::size_t set_aside, std::size_t readings);
+
+/// "at 32 of 288 readings the load leaves play open: …", a line; empty where so many are none. `in_play`: as
+/// Diagnosis::in_play.
+std::string in_play_words(std::size_t in_play, std::size_t readings);
 
 /// "how the file was read: …" with a line for each; empty without any.
 std::string how_read_text(const std::vector<std::string>&);

@@ -108,6 +108,22 @@ LoadErrors::LoadErrors(const subject::Subject& s, const subject::Standing& stand
   }
 }
 
+LoadErrors LoadErrors::with_play(const std::vector<MatrixX>& play) const {
+  LoadErrors out = *this;
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    const Eigen::Index loads = columns_[i].cols() - (play_.empty() ? 0 : play_[i].cols());
+    const Eigen::Index more = play.empty() ? 0 : play[i].cols();
+    out.columns_[i].conservativeResize(Eigen::NoChange, loads + more);
+    if (more > 0) out.columns_[i].rightCols(more) = play[i];
+  }
+  out.play_ = play;
+  return out;
+}
+
+std::size_t LoadErrors::readings_in_play() const {
+  return as_size(std::count_if(play_.begin(), play_.end(), [](const MatrixX& each) { return each.cols() > 0; }));
+}
+
 double LoadErrors::deviation(const measurement::MeasuredValue& v) const {
   return columns_[v.reading].row(as_index(v.channel)).norm();
 }

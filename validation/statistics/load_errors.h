@@ -1,4 +1,4 @@
-// What errors of the recorded loads do to the readings.
+// What is off in one reading alone: errors of the recorded loads, and where in open play the machine stands.
 //
 // A row combines loads (measurement::loads_of_row). Each was weighed, or pulled by a jack, on its own and has an error
 // of its own, L_c (1 + t u_c) with u_c ~ N(0, 1); the components of a load at one point share it. To the first order a
@@ -26,14 +26,21 @@ class LoadErrors {
   /// All loads of a reading off by one factor. `t`: its relative standard deviation.
   LoadErrors(double t, const std::vector<VectorX>& predicted);
 
-  /// Channels × loads of a reading, or one column where it has none: t p_c.
+  /// A copy with these errors of play beside those of loads (open_play.h); empty: without any.
+  LoadErrors with_play(const std::vector<MatrixX>&) const;
+  /// Readings with errors of play.
+  std::size_t readings_in_play() const;
+
+  /// Channels × loads of a reading, or one column where it has none: t p_c; behind them those of play.
   const MatrixX& of(std::size_t reading) const { return columns_[reading]; }
+  /// Channels × columns, by reading; empty: none.
+  const std::vector<MatrixX>& of_play() const { return play_; }
   /// Standard deviations of measured numbers.
   double deviation(const measurement::MeasuredValue&) const;
   VectorX deviations(const std::vector<measurement::MeasuredValue>&) const;
 
  private:
-  std::vector<MatrixX> columns_;
+  std::vector<MatrixX> columns_, play_;
 };
 
 /// σ of the noise in what scatters by so much, where errors of the loads, of this mean square, scatter too: what they

@@ -27,7 +27,7 @@ MatrixX by_parts(const MatrixX& X, int threads, const F& f) {
 }  // namespace
 
 Whitening::Root Whitening::root(const MatrixX& X) {
-  if (X.cols() == 0) return {MatrixX(0, 0), MatrixX(0, 0), MatrixX(0, 0)};
+  if (X.cols() == 0) return {MatrixX(0, 0), MatrixX(0, 0), MatrixX(0, 0), 0};
   MatrixX squares = MatrixX::Zero(X.cols(), X.cols());
   squares.selfadjointView<Eigen::Lower>().rankUpdate(X.transpose());
   const Eigen::SelfAdjointEigenSolver<MatrixX> axes(squares);  // reads the lower half
@@ -37,7 +37,7 @@ Whitening::Root Whitening::root(const MatrixX& X) {
   const MatrixX& V = axes.eigenvectors();
   const VectorX square = -deviation.array().square().inverse();
   return {V * less.asDiagonal() * V.transpose(), V * more.asDiagonal() * V.transpose(),
-          V * square.asDiagonal() * V.transpose()};
+          V * square.asDiagonal() * V.transpose(), 2 * deviation.array().log().sum()};
 }
 
 Whitening::Whitening(const std::vector<NoiseBlock>& blocks, const PartedColumns& errors, int threads)
@@ -47,6 +47,7 @@ Whitening::Whitening(const std::vector<NoiseBlock>& blocks, const PartedColumns&
     MatrixX inverse = MatrixX::Identity(b.size, b.size);
     b.covariance.llt().matrixL().solveInPlace(inverse);
     factors_.push_back({b.first, b.size, entries_.size()});
+    log_determinant_ -= 2 * inverse.diagonal().array().log().sum();
     for (Eigen::Index i = 0; i < b.size; ++i)
       for (Eigen::Index k = 0; k <= i; ++k) entries_.push_back(inverse(i, k));
   }
@@ -65,10 +66,12 @@ Whitening::Whitening(const std::vector<NoiseBlock>& blocks, const PartedColumns&
       Root of_group = root(g.O);
       g.less = std::move(of_group.less);
       g.more = std::move(of_group.more);
+      log_determinant_ += of_group.log_determinant;
     }
   }
   B_ = by_parts(errors.shared, threads_, [&](const MatrixX& part) { return within_groups(part); });
   root_ = root(B_);
+  log_determinant_ += root_.log_determinant;
 }
 
 MatrixX Whitening::by_noise(const MatrixX& X) const {

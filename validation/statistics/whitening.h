@@ -53,6 +53,8 @@ class Whitening {
   VectorX norms_of_shared(const GroupColumns&) const;
   /// B.
   const MatrixX& shared() const { return B_; }
+  /// ln det Σ, of the numbers that are not ignored.
+  double log_determinant() const { return log_determinant_; }
   /// Expectation of the errors' amplitudes, prior N(0, 1), given r: [S O]ᵀ Σ⁻¹ r; those of S, then group by group.
   VectorX amplitudes(const VectorX& r) const;
   Eigen::Index rows() const { return rows_; }
@@ -62,6 +64,7 @@ class Whitening {
   /// (1 + X Xᵀ)^(∓1/2) = 1 + X less Xᵀ, 1 + X more Xᵀ;
   struct Root {
     MatrixX less, more, square;  // (1 + X Xᵀ)⁻¹ = 1 + X square Xᵀ
+    double log_determinant = 0;  // of 1 + X Xᵀ
   };
   struct Factor {
     Eigen::Index first, size;
@@ -78,6 +81,7 @@ class Whitening {
 
   Eigen::Index rows_ = 0, amplitudes_ = 0;
   int threads_ = 1;
+  double log_determinant_ = 0;
   std::vector<Factor> factors_;
   std::vector<double> entries_;
   std::vector<Group> groups_;

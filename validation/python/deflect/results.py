@@ -145,6 +145,7 @@ class Comparison(Result):
     mistakes: List[schema.Mistake]
     inside: Maybe[schema_measured.Inside]
     set_aside_lines: List[int]
+    in_play: Maybe[int]
     provenance: Maybe[schema.Provenance]
 
     _table = "tests"
@@ -230,6 +231,7 @@ class Diagnosis(Result):
     tolerance_scale: float
     readings: int
     set_aside: int
+    in_play: Maybe[int]
     strained_tolerances: List[schema.Strained]
     detectable: List[schema_measured.Detectable]
     left_out: List[schema.LeftOut]
