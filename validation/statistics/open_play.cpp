@@ -7,6 +7,7 @@
 #include <string>
 
 #include "msa/base/index.h"
+#include "msa/base/outcome.h"
 
 namespace deflect::statistics {
 namespace {
@@ -36,9 +37,14 @@ std::vector<MatrixX> open_play(const subject::Standing& standing, const measurem
   const prediction::Predicted middle = standing.predicted(data, linear, parallel::alone);
   if (middle.floating.at_readings.empty()) return {};
   for (std::size_t i = 0; i < data.readings.size(); ++i) linear.only.push_back(middle.floating.at(i));
-  std::array<prediction::Predicted, 6> ends;
-  for (std::size_t axis = 0; axis < ends.size(); ++axis)
-    ends[axis] = standing.predicted(with_more(data, axis, standing.size(), linear.only), linear, parallel::alone);
+  const auto found = outcome_of([&] {
+    std::array<prediction::Predicted, 6> out;
+    for (std::size_t axis = 0; axis < out.size(); ++axis)
+      out[axis] = standing.predicted(with_more(data, axis, standing.size(), linear.only), linear, parallel::alone);
+    return out;
+  });
+  if (!found) return {};
+  const std::array<prediction::Predicted, 6>& ends = *found;
   std::vector<MatrixX> out;
   for (std::size_t i = 0; i < data.readings.size(); ++i) {
     out.emplace_back(middle.readings[i].size(), 0);

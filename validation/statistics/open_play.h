@@ -16,8 +16,8 @@
 namespace deflect::statistics {
 
 /// By reading, channels × columns: errors of covariance 2 Σ J Jᵀ over the open play at the reading, no columns where
-/// none is open; empty where none is at any. J by the readings under a little more load along and about each axis,
-/// which closes the play. `standing`: at the poses of the measurements.
+/// none is open; empty where none is at any, or where it cannot be told. J by the readings under a little more load
+/// along and about each axis, which closes the play. `standing`: at the poses of the measurements.
 std::vector<MatrixX> open_play(const subject::Standing& standing, const measurement::Measurements&);
 
 /// Whether a residual is likelier with these errors of play than without, each with its uncertainty, of the same
