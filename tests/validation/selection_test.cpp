@@ -100,10 +100,10 @@ Step with_odds_about(double wanted) {
   return s;
 }
 
-// A second effect is taken where the odds for it are above e⁴ = 55, and not before.
-TEST(Selection, TakesAFurtherEffectFromOddsOfFiftyFive) {
-  EXPECT_EQ(with_odds_about(3.2).effects, 1u);
-  EXPECT_EQ(with_odds_about(5).effects, 2u);
+// The odds are those of 4 to 1 for something missing; of 1 to 3 for something more they are even where these are 12.
+TEST(Selection, TakesAFurtherEffectWhereItIsLikelierThanNot) {
+  EXPECT_EQ(with_odds_about(std::log(12) - 0.6).effects, 1u);
+  EXPECT_EQ(with_odds_about(std::log(12) + 0.6).effects, 2u);
 }
 
 /// Of the size at which it changes the readings by λ: a compliance is in proportion to it.

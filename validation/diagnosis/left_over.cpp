@@ -47,7 +47,7 @@ bool is_a_law_elsewhere(const effects::PlacedEffect& e, const Selection& with, c
   const AtPlace* place = likeliest(alone);
   if (!place || at_the_same_part(e, place->place(), with.observations)) return false;
   const double more = log_evidence(at_places(all, with.effects, with.fit, candidates.threads())) - log_evidence(alone);
-  return candidates.class_log_odds_of(e, std::max(0.0, without.chi2 - with.fit.chi2)) + more < called_for;
+  return candidates.class_log_odds_of(e, std::max(0.0, without.chi2 - with.fit.chi2)) + more < clearly;
 }
 
 /// The likeliest size of the noise that leaves this residual, in standard deviations as given, 1 or more. Noise s times
@@ -218,7 +218,7 @@ Selection named_beside_unknown(const std::shared_ptr<const WhitenedFamilies>& pa
     if (!rest.found) continue;  // the others need it
     const double gain = common.chi2(rest.residual, size) - common.chi2(s.fit.residual, size);
     const bool is_common = rest.chi2 <= own_part * s.fit.chi2 &&
-                           candidates.class_log_odds_of(s.effects[i], std::max(0.0, gain)) <= called_for;
+                           candidates.class_log_odds_of(s.effects[i], std::max(0.0, gain)) <= clearly;
     if (!is_common && !is_a_law_elsewhere(s.effects[i], s, others, rest, all, candidates)) continue;
     s.effects = std::move(others);
     s.fit = std::move(rest);

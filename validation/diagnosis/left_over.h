@@ -48,8 +48,10 @@ struct AllAtOnePlace {
 /// counts as large as the better of the two leaves it.
 std::optional<AllAtOnePlace> at_one_place(const Weighed&, const Candidates&, const Selection&, double more);
 
+/// ln of the odds from which one is clearly likelier than the other.
+inline constexpr double clearly = 4;
 /// ln of the odds by which a law at one place must be likelier, where effects alone leave nothing unknown.
-inline const double clearly_one_place = called_for - std::log(Candidates::prior_unknown);
+inline const double clearly_one_place = clearly - std::log(Candidates::prior_unknown);
 
 /// Whether that law is clearly likelier, whatever the places of the effects, and leaves no more than noise does; where
 /// an effect is of another place, little more: then no further effects are to be looked for.

@@ -7,6 +7,7 @@
 // unit, evidence calls for ever more; a fifth and a sixth are added where each takes off half of what the others leave.
 #pragma once
 
+#include <cmath>
 #include <functional>
 
 #include "validation/diagnosis/candidates.h"
@@ -27,8 +28,11 @@ struct Selection {
   std::vector<LeftOut> left_out;  ///< could not be fitted beside the others
 };
 
-/// A further effect is added only where ln of its odds exceeds this.
-inline constexpr double called_for = 4;
+/// That something more is missing beside what was found: its odds before any reading.
+inline constexpr double further_odds = 1.0 / 3;
+/// A further effect is added only where ln of its odds exceeds this. They are counted from those of something missing
+/// at all (Candidates::prior_missing): with those of something more, it is then likelier than not.
+inline const double called_for = std::log(Candidates::prior_missing / (1 - Candidates::prior_missing) / further_odds);
 
 /// After each step the effects found so far count as right (Observations::granted). `first`: candidates of the first
 /// step. `enough`: whether no further effect is to be looked for beside these, which are two or more.
