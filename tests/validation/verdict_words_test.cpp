@@ -65,6 +65,8 @@ TEST(VerdictWords, WhatIsMissingIsSaidInTheNumbersInWhichItShows) {
 TEST(VerdictWords, OutliersAreTheHeadlineAboveOneInTwenty) {
   EXPECT_EQ(outlier_words(36, 720), "");
   EXPECT_TRUE(has(outlier_words(37, 720), "37 of 720 readings (5.1 %) are gross outliers"));
+  EXPECT_EQ(in_play_words(0, 288), "");
+  EXPECT_TRUE(has(in_play_words(32, 288), "at 32 of 288 readings the load leaves play open"));
   Comparison c = comparison(2e-6, 2e-6, 1, 1, 0);
   c.set_aside.resize(72);
   EXPECT_TRUE(verdict_words(c).starts_with("72 of 720 readings (10.0 %) are gross outliers")) << verdict_words(c);

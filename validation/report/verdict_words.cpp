@@ -158,8 +158,7 @@ std::string in_play_words(std::size_t in_play, std::size_t readings) {
   if (in_play == 0) return "";
   return fmt::format(
       "at {} of {} readings the load leaves play open: forces too small to be known say where in it the machine "
-      "stands, "
-      "which counts as unknown there\n",
+      "stands, which counts as unknown there\n",
       in_play, readings);
 }
 
