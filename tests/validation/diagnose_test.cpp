@@ -237,8 +237,8 @@ TEST(Diagnose, ProbabilityOfTheUnknownIsThatOfBayes) {
   ASSERT_EQ(d.missing.size(), 1u);
   const Observations o(ideal(), data, {}), seen = o.granted(subject_with(o, d.missing, d.fit.values));
   const SignaturesAtPlaces all(o, one, 1);
-  const LeftOver left =
-      left_over(seen.whitened_patterns(), {all, seen}, d.missing, fit_of_all(seen, d.missing, d.fit.values), 1);
+  const Fit fit = fit_of_all(seen, d.missing, d.fit.values);
+  const LeftOver left = left_over(seen.whitened_patterns(), at_places({all, seen}, d.missing, fit, 1), fit);
   EXPECT_NEAR(9 * d.probability_unknown / (1 - d.probability_unknown) / std::exp(left.log_evidence), 1, 1e-3);
   EXPECT_NEAR(total(d), 1, 1e-12);
 }

@@ -192,8 +192,9 @@ TEST(AtOnePlace, WhatIsElsewhereIsNotNamedBesideACurveWithKneesInEveryLeg) {
   const Hypothesis two = {{&find_effect(known, "hardening@motor.rz"), {}}, {&find_effect(known, "load_gain"), {}}};
   const Selection found{o, two, fit_of_all(o, two, test::values({3.6e6, 2.7e-4, 0.5})), {}, {}};
   ASSERT_TRUE(found.fit.found);
-  EXPECT_TRUE(is_all_at_one_place(signatures.known(), candidates, found));
-  const std::optional<AllAtOnePlace> at = at_one_place(signatures.known(), candidates, found, clearly_one_place);
+  const ByPlaces laws = by_places(signatures.known(), found, 2);
+  EXPECT_TRUE(is_all_at_one_place(laws, candidates, found));
+  const std::optional<AllAtOnePlace> at = at_one_place(laws, candidates, found, clearly_one_place);
   ASSERT_TRUE(at);
   ASSERT_EQ(at->there.effects.size(), 1u);
   EXPECT_EQ(at->there.effects.front().effect->name, "hardening@motor.rz");
@@ -253,8 +254,8 @@ TEST(AtOnePlace, AnEntryIsWhereItEdits) {
   const SignaturesAtPlaces signatures(o, known, 2);
   const Candidates candidates(signatures.all(), 2);
   const Hypothesis two = {{&find_effect(known, "motor_compliance"), {}}, {&find_effect(known, "load_gain"), {}}};
-  const std::optional<AllAtOnePlace> at =
-      at_one_place(signatures.known(), candidates, {o, two, fit_of_all(o, two, test::values({1e6, 1.1})), {}, {}}, 0);
+  const Selection found{o, two, fit_of_all(o, two, test::values({1e6, 1.1})), {}, {}};
+  const std::optional<AllAtOnePlace> at = at_one_place(by_places(signatures.known(), found, 2), candidates, found, 0);
   ASSERT_TRUE(at);
   ASSERT_EQ(at->there.effects.size(), 1u);
   EXPECT_EQ(at->there.effects.front().effect->name, "motor_compliance");
@@ -297,22 +298,24 @@ TEST(AtOnePlace, StandsForEffectsThatAddUpToIt) {
   ASSERT_GT(more, 2);
   const Selection four = found({2, 3, 4, 5}, VectorX::Constant(4, 20));
   ASSERT_LT(four.fit.chi2, 0.1);
-  EXPECT_FALSE(at_one_place(all, candidates, four, more + 0.1));
-  const std::optional<AllAtOnePlace> at = at_one_place(all, candidates, four, more - 0.1);
+  const ByPlaces of_four = by_places(all, four, 1);
+  EXPECT_FALSE(at_one_place(of_four, candidates, four, more + 0.1));
+  const std::optional<AllAtOnePlace> at = at_one_place(of_four, candidates, four, more - 0.1);
   ASSERT_TRUE(at);
   EXPECT_FALSE(at->all_there);
   EXPECT_TRUE(at->there.effects.empty());
   EXPECT_NEAR(at->there.fit.chi2, 1600, 1);
   // So clear that no further effect is looked for, unless the law leaves more than noise: here 20² of six numbers.
   ASSERT_GT(more, clearly_one_place);
-  EXPECT_TRUE(is_all_at_one_place(all, candidates, four));
+  EXPECT_TRUE(is_all_at_one_place(of_four, candidates, four));
   const test::springs_apart::Seen beside =
       test::springs_apart::seen(20 * (axis(0) + axis(1) + axis(2) + axis(3)) + 20 * axis(4));
   const Selection not_all{
       beside.observations, four.effects, fit_of_all(beside.observations, four.effects, four.fit.values), {}, {}};
-  EXPECT_FALSE(is_all_at_one_place(all, candidates, not_all));
+  EXPECT_FALSE(is_all_at_one_place(by_places(all, not_all, 1), candidates, not_all));
   // An effect at the place itself stays.
-  const std::optional<AllAtOnePlace> named = at_one_place(all, candidates, found({0, 4}, test::values({28, 20})), 0);
+  const Selection both = found({0, 4}, test::values({28, 20}));
+  const std::optional<AllAtOnePlace> named = at_one_place(by_places(all, both, 1), candidates, both, 0);
   ASSERT_TRUE(named);
   ASSERT_EQ(named->there.effects.size(), 1u);
   EXPECT_EQ(named->there.effects[0].effect->name, "a");
@@ -325,7 +328,7 @@ TEST(AtOnePlace, StandsForEffectsThatAddUpToIt) {
                         fit_of_all(more_left.observations, {{&known[0], {}}}, VectorX::Constant(1, 28)),
                         {},
                         {}};
-  const std::optional<AllAtOnePlace> beside_it = at_one_place(all, candidates, alone, 0);
+  const std::optional<AllAtOnePlace> beside_it = at_one_place(by_places(all, alone, 1), candidates, alone, 0);
   ASSERT_TRUE(beside_it && beside_it->all_there);
   EXPECT_EQ(beside_it->there.effects.size(), 1u);
   ASSERT_EQ(beside_it->instead.instead.size(), 1u);

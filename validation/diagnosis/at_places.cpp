@@ -93,38 +93,51 @@ AtPlace::Span span_of_few(const MatrixX& columns, const VectorX& residual) {
   return out;
 }
 
+/// What a law at a place can do to the readings, weighed. It takes far longer to find than to compare with a residual.
+struct ColumnsAtPlace {
+  ColumnsAtPlace(const Weighed& all, const LawsAtPlace& place) {
+    Columns of_whatever = nullptr, of_friction = nullptr;
+    if (place.without) {
+      const PlaceWithoutLaw here = all.place(*place.without);
+      of_whatever = here.whatever_the_law, of_friction = here.any_friction;
+    }
+    for (const Signature* s : place.laws) laws.push_back(all.law(*s));
+    if (!laws.empty()) {
+      const Signature& first = laws.front();
+      of_whatever = first.whatever_the_law, curve = first.any_curve, of_friction = first.any_friction;
+    }
+    if (of_whatever) whatever = of_whatever();
+    if (of_friction) friction = of_friction();
+  }
+
+  std::vector<Signature> laws;  ///< in the order of the place's
+  std::optional<MatrixX> whatever, friction;
+  AnyCurve curve = nullptr;
+};
+
 /// By all laws at a place, by a few frictions there, and by any of the curves, alone and, but for finer lines, beside
 /// the laws.
-AtPlace explained_by(const Weighed& all, const LawsAtPlace& place, const VectorX& residual, const MatrixX& fitted,
-                     std::span<const Curves> curves) {
+AtPlace explained_by(const ColumnsAtPlace& here, const LawsAtPlace& place, const VectorX& residual,
+                     const MatrixX& fitted, std::span<const Curves> curves) {
   AtPlace out;
   out.without_law = place.without;
   out.prior = place.prior / spans_of(place);
   double most = -1;
   std::vector<MatrixX> columns;
-  Columns whatever = nullptr, friction = nullptr;
-  AnyCurve curve = nullptr;
-  if (place.without) {
-    const PlaceWithoutLaw here = all.place(*place.without);
-    whatever = here.whatever_the_law, friction = here.any_friction;
-  }
   const auto add = [&](const MatrixX& basis) {
     const MatrixX beside = basis - fitted * (fitted.transpose() * basis);
     for (const auto column : beside.colwise())
       if (column.norm() > left_of_a_column) columns.emplace_back(column);
   };
-  for (const Signature* s : place.laws) {
-    const Signature law = all.law(*s);
+  for (std::size_t i = 0; i < here.laws.size(); ++i) {
+    const Signature& law = here.laws[i];
     add(law.basis);
-    if (s == place.laws.front()) {
-      whatever = law.whatever_the_law, curve = law.any_curve, friction = law.any_friction;
-    }
     const double gain = most_gain(law, residual, fitted);
     if (gain <= most) continue;
-    most = gain, out.best = s;
+    most = gain, out.best = place.laws[i];
     out.other_way = law.one_sided && law.start_along(residual) > 0;
   }
-  if (whatever) add(whatever());
+  if (here.whatever) add(*here.whatever);
   out.spans.push_back(span_of(columns, residual));
   const std::vector<MatrixX> laws = std::move(columns);
   const auto few_of = [&](const MatrixX& basis, bool rubs) {
@@ -134,14 +147,14 @@ AtPlace explained_by(const Weighed& all, const LawsAtPlace& place, const VectorX
     out.spans.push_back(span_of_few(statistics::side_by_side(columns, residual.size()), residual));
     out.spans.back().rubs = rubs;
   };
-  if (friction) few_of(friction(), true);
+  if (here.friction) few_of(*here.friction, true);
   for (const Curves kind : curves) {
     if (kind == Curves::finer_lines) {
-      few_of(curve(kind), false);
+      few_of(here.curve(kind), false);
       continue;
     }
     columns.clear();
-    add(curve(kind));
+    add(here.curve(kind));
     out.spans.push_back(span_of(columns, residual));
     columns.insert(columns.end(), laws.begin(), laws.end());
     out.spans.push_back(span_of(columns, residual));
@@ -214,23 +227,36 @@ PlaceWithoutLaw Weighed::place(const PlaceWithoutLaw& p) const {
   return signatures_ ? signatures_->seen_by(observations_, p) : p;
 }
 
-std::vector<AtPlace> at_places(const Weighed& all, const Hypothesis& effects, const Fit& fit, int threads) {
-  const MatrixX fitted =
-      fit.signature.cols() > 0 ? statistics::orthonormal(fit.signature) : MatrixX(fit.residual.size(), 0);
+std::vector<std::vector<AtPlace>> at_places(const Weighed& all, const std::vector<Fitted>& beside, int threads) {
+  std::vector<MatrixX> fitted;
+  for (const auto& [effects, fit] : beside)
+    fitted.push_back(fit.signature.cols() > 0 ? statistics::orthonormal(fit.signature)
+                                              : MatrixX(fit.residual.size(), 0));
   const std::vector<LawsAtPlace> places = laws_by_place(all.all());
-  std::vector<AtPlace> out(places.size());
-  parallel::for_each_case(places.size(), 1, threads,
-                          [&](std::size_t i) { out[i] = explained_by(all, places[i], fit.residual, fitted, {}); });
-  const auto try_curves = [&](const std::vector<std::size_t>& where, std::span<const Curves> curves) {
-    parallel::for_each_case(where.size(), 1, threads, [&](std::size_t k) {
-      out[where[k]] = explained_by(all, places[where[k]], fit.residual, fitted, curves);
-    });
-  };
-  const std::vector<std::size_t> curved = worth_any_curve(places, out, effects);
-  try_curves(curved, curves_tried_first);
-  try_curves(worth_finer_lines(curved, out, fit), all_curves);
-  std::erase_if(out, [](const AtPlace& p) { return p.spans.empty(); });
+  std::vector<std::vector<AtPlace>> out(beside.size(), std::vector<AtPlace>(places.size()));
+  parallel::for_each_case(places.size(), 1, threads, [&](std::size_t i) {
+    const ColumnsAtPlace here(all, places[i]);
+    for (std::size_t k = 0; k < beside.size(); ++k)
+      out[k][i] = explained_by(here, places[i], beside[k].fit.residual, fitted[k], {});
+  });
+  for (std::size_t k = 0; k < beside.size(); ++k) {
+    const auto& [effects, fit] = beside[k];
+    const auto try_curves = [&](const std::vector<std::size_t>& where, std::span<const Curves> curves) {
+      parallel::for_each_case(where.size(), 1, threads, [&](std::size_t j) {
+        const LawsAtPlace& place = places[where[j]];
+        out[k][where[j]] = explained_by({all, place}, place, fit.residual, fitted[k], curves);
+      });
+    };
+    const std::vector<std::size_t> curved = worth_any_curve(places, out[k], effects);
+    try_curves(curved, curves_tried_first);
+    try_curves(worth_finer_lines(curved, out[k], fit), all_curves);
+    std::erase_if(out[k], [](const AtPlace& p) { return p.spans.empty(); });
+  }
   return out;
+}
+
+std::vector<AtPlace> at_places(const Weighed& all, const Hypothesis& effects, const Fit& fit, int threads) {
+  return std::move(at_places(all, {{effects, fit}}, threads).front());
 }
 
 const AtPlace::Span& AtPlace::most() const {

@@ -68,6 +68,13 @@ struct AtPlace {
 /// the result.
 std::vector<AtPlace> at_places(const Weighed&, const Hypothesis& fitted, const Fit&, int threads);
 
+/// The same beside several fits that are weighed alike, of each one: the columns of a place are found once.
+struct Fitted {
+  const Hypothesis& effects;
+  const Fit& fit;
+};
+std::vector<std::vector<AtPlace>> at_places(const Weighed&, const std::vector<Fitted>&, int threads);
+
 /// ln of the evidence that an unknown law acts at one of the places, over all places by their priors. ln 0 without any.
 double log_evidence(const std::vector<AtPlace>&);
 

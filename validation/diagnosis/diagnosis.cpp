@@ -135,7 +135,7 @@ struct FirstStep {
         candidates(all(), work.threads, [&](std::size_t done, std::size_t of) { rounds(done, of); }),
         null(fit_of_all(o, {}, VectorX(0))),
         each(candidates.beside(o, {}, null, even_hopeless)),
-        left(left_over(o.whitened_patterns(), signatures.known(), {}, null, work.threads)),
+        left(left_over(o.whitened_patterns(), at_places(signatures.known(), {}, null, work.threads), null)),
         larger(larger_tolerances(o)),
         chance(chance_of_any(all(), candidates.between(), least_p_value(all(), each), bootstrap_sets, work,
                              [&](std::size_t done, std::size_t of) { rounds(done, of); })) {}
@@ -191,18 +191,18 @@ struct Explained {
 Explained nothing(const FirstStep& s) { return {{s.observations, {}, s.null, {}, {}}, {}}; }
 
 Explained explained(const FirstStep& s, const Candidates& candidates, const std::vector<Candidate>& first) {
-  const auto enough = [&](const Selection& so_far) {
-    return is_all_at_one_place(Weighed(s.signatures, so_far.observations), candidates, so_far);
+  const auto places_of = [&](const Selection& found) {
+    return by_places({s.signatures, found.observations}, found, candidates.threads());
   };
+  const auto enough = [&](const Selection& f) { return is_all_at_one_place(places_of(f), candidates, f); };
   Explained out{select(s.observations, candidates, first, enough), {}};
   out.patterns = out.found.observations.whitened_patterns();
-  const Weighed known(s.signatures, out.found.observations);
-  out.left = left_over(out.patterns, known, out.found.effects, out.found.fit, candidates.threads());
+  const ByPlaces places = places_of(out.found);
+  out.left = left_over(out.patterns, places.beside, out.found.fit);
   const double more = out.left.significant() ? 0 : clearly_one_place;
-  if (std::optional<AllAtOnePlace> at = at_one_place(known, candidates, out.found, more)) {
+  if (std::optional<AllAtOnePlace> at = at_one_place(places, candidates, out.found, more)) {
     out.found = std::move(at->there);
-    if (!at->all_there)
-      out.left = left_over(out.patterns, known, out.found.effects, out.found.fit, candidates.threads());
+    if (!at->all_there) out.left = left_over(out.patterns, places_of(out.found).beside, out.found.fit);
     if (out.left.significant())
       out.left.instead = std::move(at->instead.instead);
     else if (at->all_there)

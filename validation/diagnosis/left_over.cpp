@@ -127,12 +127,22 @@ std::string pattern_left(const Selection& found, const std::vector<Localised>& p
   return out.empty() ? no_pattern(o, subject) : out;
 }
 
-LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>& patterns, const Weighed& all,
-                   const Hypothesis& fitted, const Fit& fit, int threads) {
+LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>& patterns, const std::vector<AtPlace>& places,
+                   const Fit& fit) {
   const Discrepancy common(patterns, fit.signature);
-  const std::vector<AtPlace> places = at_places(all, fitted, fit, threads);
   return {log_mean_exp({common.log_evidence(fit.residual), log_evidence(places)}),
           std::min(1.0, 2 * std::min(common.p_value(fit.residual), p_value(places)))};
+}
+
+ByPlaces by_places(const Weighed& all, const Selection& s, int threads) {
+  ByPlaces out{fit_of_all(s.observations, {}, VectorX(0)), {}, {}};
+  const Hypothesis none;
+  std::vector<Fitted> fits = {{none, out.null}};
+  if (!s.effects.empty()) fits.push_back({s.effects, s.fit});
+  std::vector<std::vector<AtPlace>> places = at_places(all, fits, threads);
+  out.beside = std::move(places.back());
+  out.alone = s.effects.empty() ? out.beside : std::move(places.front());
+  return out;
 }
 
 namespace {
@@ -145,10 +155,8 @@ struct OnePlace {
   std::vector<Localised> places = {};     ///< shares are of all of χ² beyond noise
 };
 
-OnePlace one_place(const Weighed& all, const Candidates& candidates, const Selection& s) {
-  const Fit null = fit_of_all(s.observations, {}, VectorX(0));
-  const std::vector<AtPlace> alone = at_places(all, {}, null, candidates.threads()),
-                             beside = at_places(all, s.effects, s.fit, candidates.threads());
+OnePlace one_place(const ByPlaces& by_places, const Candidates& candidates, const Selection& s) {
+  const auto& [null, alone, beside] = by_places;
   const AtPlace *place = likeliest(alone), *further = likeliest(beside);
   if (!place) return {};
   const AtPlace::Span& most = place->most();
@@ -177,9 +185,9 @@ std::vector<Localised> beside_these(std::vector<Localised> places, double null, 
 
 }  // namespace
 
-std::optional<AllAtOnePlace> at_one_place(const Weighed& all, const Candidates& candidates, const Selection& s,
+std::optional<AllAtOnePlace> at_one_place(const ByPlaces& places, const Candidates& candidates, const Selection& s,
                                           double more) {
-  const OnePlace one = s.effects.empty() ? OnePlace{} : one_place(all, candidates, s);
+  const OnePlace one = s.effects.empty() ? OnePlace{} : one_place(places, candidates, s);
   if (!one.place) return std::nullopt;
   AllAtOnePlace out{s, {one.likelier, one.p_value}};
   for (std::size_t i = s.effects.size(); i-- > 0;) {
@@ -198,8 +206,8 @@ std::optional<AllAtOnePlace> at_one_place(const Weighed& all, const Candidates& 
   return out;
 }
 
-bool is_all_at_one_place(const Weighed& all, const Candidates& candidates, const Selection& s) {
-  const OnePlace one = one_place(all, candidates, s);
+bool is_all_at_one_place(const ByPlaces& places, const Candidates& candidates, const Selection& s) {
+  const OnePlace one = one_place(places, candidates, s);
   if (!one.place || one.likelier < clearly_one_place) return false;
   const bool others = std::any_of(s.effects.begin(), s.effects.end(),
                                   [&](const auto& e) { return !at_the_same_part(e, *one.place, s.observations); });

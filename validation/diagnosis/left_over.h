@@ -26,8 +26,15 @@ struct LeftOver {
   static constexpr double least_p = 3e-3;
 };
 
-LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>&, const Weighed&, const Hypothesis& fitted, const Fit&,
-                   int threads);
+/// `places`: laws at places beside that fit (at_places()).
+LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>&, const std::vector<AtPlace>& places, const Fit&);
+
+/// Laws at places without any effect and beside those of a selection, both as its observations weigh them.
+struct ByPlaces {
+  Fit null;  ///< without any effect
+  std::vector<AtPlace> alone, beside;
+};
+ByPlaces by_places(const Weighed&, const Selection&, int threads);
 
 /// Of the entries without a place the one that takes most of what the fit leaves, and how much, in χ²; "" and 0 where
 /// none takes any.
@@ -46,7 +53,7 @@ struct AllAtOnePlace {
 /// Where an unknown law at one place alone is likelier than all the effects and an unknown law beside them: by `more`
 /// in ln of the odds where some of these are of another place, else significantly. Nullopt where it is not. Noise
 /// counts as large as the better of the two leaves it.
-std::optional<AllAtOnePlace> at_one_place(const Weighed&, const Candidates&, const Selection&, double more);
+std::optional<AllAtOnePlace> at_one_place(const ByPlaces&, const Candidates&, const Selection&, double more);
 
 /// ln of the odds from which one is clearly likelier than the other.
 inline constexpr double clearly = 4;
@@ -55,7 +62,7 @@ inline const double clearly_one_place = clearly - std::log(Candidates::prior_unk
 
 /// Whether that law is clearly likelier, whatever the places of the effects, and leaves no more than noise does; where
 /// an effect is of another place, little more: then no further effects are to be looked for.
-bool is_all_at_one_place(const Weighed&, const Candidates&, const Selection&);
+bool is_all_at_one_place(const ByPlaces&, const Candidates&, const Selection&);
 
 /// Those of the effects that are called for even beside something unknown: where it takes what a common pattern can,
 /// and where it is a law at a place other than the effect's own.
