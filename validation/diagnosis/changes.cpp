@@ -12,9 +12,10 @@ namespace deflect::diagnosis {
 namespace {
 
 constexpr double agreed = 1e-2;
-constexpr double unseen = 1e-6;     // standard deviations of noise
-constexpr double sampled = 0.125;   // share of the readings that leave play open which is asked whether it shows
-constexpr double rounding = 1e-11;  // of a prediction: less is no change
+constexpr double unseen = 1e-6;      // standard deviations of noise
+constexpr double sampled = 0.125;    // share of the readings that leave play open which is asked whether it shows
+constexpr double most_sampled = 64;  // of them
+constexpr double rounding = 1e-11;   // of a prediction: less is no change
 constexpr double part_of_a_load = 0.1;
 constexpr double hundredth = 1e-2;  // of a machine's load, of its size, or rad
 constexpr const char* load_at_tool = "rig.load_cell";
@@ -325,10 +326,12 @@ std::optional<VectorX> Changes::by_statics(const effects::PlacedEffect& e) const
   if (!told) return std::nullopt;
   VectorX change = -statistics::rows_of(study.values, told->readings);
   std::vector<bool> some(told->floats.size(), false), others = some;
+  const auto all = static_cast<double>(std::count(told->floats.begin(), told->floats.end(), true));
   // Golden section: no period of a campaign is sampled in step.
   double floating = 0;
   for (std::size_t i = 0; i < some.size(); ++i)
-    if (told->floats[i]) (std::fmod(0.6180339887498949 * floating++, 1) < sampled ? some : others)[i] = true;
+    if (told->floats[i])
+      (std::fmod(0.6180339887498949 * floating++, 1) < std::min(sampled, most_sampled / all) ? some : others)[i] = true;
   const auto moved = [&](const std::vector<bool>& readings) { return moved_by_play({e, start}, readings, change); };
   // Of play in one leg they count as in the middle: to predict them for every leg would take longer than all else.
   if (!e.leg && floating > 0 && moved(some) && floating > 1) moved(others);
