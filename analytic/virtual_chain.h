@@ -84,9 +84,6 @@ struct Restraint {
   VectorX b = VectorX(0);
   Vector3 m = Vector3::Zero();  ///< moment of the state: with respect to spins the stiffness is K − ½[m]×
   bool stable = true;           ///< with the body held fixed; set where ShapeConditions::judged
-  /// Likewise: the smallest motion of the end by passive freedoms beside the largest, rotations weighed by the length;
-  /// 0 in a singular position, 1 without passive freedoms.
-  double mobility = 1;
 };
 
 /// The largest motion of a freedom so far, and in the last step; rotations times length (m).
@@ -165,10 +162,13 @@ struct VirtualChain {
 
   /// restrain(): for an end held by another body, at `end`. follow(): that body moves further by t, under a wrench that
   /// B μ completes; freedoms and F follow.
-  Restraint restrain(const Tip& end, const ShapeConditions&);
+  const Restraint& restrain(const Tip& end, const ShapeConditions&);
   Progress follow(const Vector6& t, const VectorX& mu, const ShapeConditions&);
 
   const Restraint& restraint() const { return restraint_; }  ///< of the last restrain()
+  /// Likewise: the smallest motion of the end by passive freedoms beside the largest, rotations weighed by the length;
+  /// 0 in a singular position, 1 without passive freedoms.
+  double mobility() const;
   /// Adds the strain energy of each part in an equilibrium, J.
   void add_energies(const ShapeConditions&, std::map<std::string, double>&) const;
   /// How the steps before `step` move what stands behind them; in second order nothing moves.
@@ -177,6 +177,7 @@ struct VirtualChain {
  private:
   Linearised held_;
   Restraint restraint_;
+  MatrixX passive_;   // motions of the end by passive freedoms, weighed
   Vector6 lack_;      // c
   MatrixX response_;  // z by [t + c; 1]
 };

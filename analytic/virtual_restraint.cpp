@@ -86,13 +86,6 @@ Vector6 gap(const Tip& end, const Linearised& l, const Vector3& p_E, const Vecto
   return c;
 }
 
-/// Smallest singular value beside the largest.
-double mobility_of(const MatrixX& J) {
-  if (J.size() == 0) return 1;
-  const VectorX moves = J.jacobiSvd().singularValues();
-  return moves(moves.size() - 1) / moves(0);
-}
-
 MatrixX pick(const MatrixX& A, const std::vector<Eigen::Index>& rows, const std::vector<Eigen::Index>& cols) {
   return A(rows, cols);
 }
@@ -151,7 +144,7 @@ std::string branch_at_dead_centre(const VirtualChain& chain) {
   for (const VirtualStep& step : chain.steps)
     if (const auto* group = std::get_if<VirtualGroup>(&step))
       for (const VirtualChain& branch : group->branches) {
-        if (branch.restraint().mobility < singular) return branch.name;
+        if (branch.mobility() < singular) return branch.name;
         if (std::string within = branch_at_dead_centre(branch); !within.empty()) return within;
       }
   return {};
@@ -205,7 +198,7 @@ VectorX by_row(const MatrixX& M) {
 // where they are (smallest solution). The chain is stable while its end is held if A is positive definite on Jδ = 0,
 // which by Sylvester's law means: as many positive eigenvalues of the matrix and negative ones of A_EE as f has
 // entries.
-Restraint VirtualChain::restrain(const Tip& end, const ShapeConditions& conditions) {
+const Restraint& VirtualChain::restrain(const Tip& end, const ShapeConditions& conditions) {
   held_ = linearise(conditions);
   const Linearised& l = held_;
   const bool finite = conditions.geometry == Geometry::finite;
@@ -227,6 +220,7 @@ Restraint VirtualChain::restrain(const Tip& end, const ShapeConditions& conditio
   };
   const MatrixX C = along_P(along_P(J_E * yields).transpose());
   const MatrixX J_hat = along_P(J_Q - J_E * A_EE_EQ) * scale.asDiagonal();
+  if (conditions.judged) passive_ = J_hat;
   const MatrixX A_hat = scale.asDiagonal() * (A_QQ - A_EQ.transpose() * A_EE_EQ) * scale.asDiagonal();
   // In units in which the compliance is 1, so that ranks can be told.
   const double stiffest = A_hat.size() > 0 ? A_hat.cwiseAbs().maxCoeff() : 0;
@@ -259,11 +253,16 @@ Restraint VirtualChain::restrain(const Tip& end, const ShapeConditions& conditio
   held.B = W.asDiagonal() * B;
   held.b = -held.B.transpose() * c;
   held.stable = l.stable;
-  if (conditions.judged) held.mobility = mobility_of(J_hat);
   if (conditions.judged && held.stable)
     held.stable = (positive && plainly_splits(C / unit, J_hat, unit * A_hat)) ||
                   negatives(equilibrated(A_EE), 1e-12) + negatives(-M, 1e-14) == rank;
   return held;
+}
+
+double VirtualChain::mobility() const {
+  if (passive_.size() == 0) return 1;
+  const VectorX moves = passive_.jacobiSvd().singularValues();
+  return moves(moves.size() - 1) / moves(0);
 }
 
 Progress VirtualChain::follow(const Vector6& t, const VectorX& mu, const ShapeConditions& conditions) {
@@ -278,7 +277,7 @@ Restraint VirtualGroup::restrain(const ShapeConditions& c) {
   if (known && !c.judged) return *known;
   Restraint all;
   for (VirtualChain& branch : branches) {
-    const Restraint one = branch.restrain(tip, c);
+    const Restraint& one = branch.restrain(tip, c);
     all.K += one.K;
     all.F0 += one.F0;
     all.m += one.m;

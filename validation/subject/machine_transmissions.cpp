@@ -167,9 +167,15 @@ ByPart forces_at(const Configuration& drawn, const Configuration& yielding) {
 /// machine, m.
 bool floats(const Vector6& g, const Vector6& F, double size) {
   constexpr double rounding = 1e-9;
+  const double force = std::abs(g.dot(F));
+  const auto square = [](const Vector6& v, double length) {
+    return v.head<3>().squaredNorm() + length * length * v.tail<3>().squaredNorm();
+  };
+  // (a + b)² is 2 (a² + b²) at most: without a root for most.
+  if (force * force > 4 * rounding * rounding * square(g, size) * square(F, 1 / size)) return false;
   const double largest =
       (g.head<3>().norm() + size * g.tail<3>().norm()) * (F.head<3>().norm() + F.tail<3>().norm() / size);
-  return largest > 0 && std::abs(g.dot(F)) <= rounding * largest;
+  return largest > 0 && force <= rounding * largest;
 }
 
 /// Translations of the base come before all that turns: in every shape they carry the load as it is, and play that it
@@ -219,11 +225,13 @@ class MachineTransmissions final : public Transmissions {
                                                     const std::function<Curve()>& at_rest,
                                                     const measurement::Measurements& data) const override {
     if (place.freedoms.size() != 1 || !place.others.empty()) return std::nullopt;
-    std::map<std::pair<std::size_t, std::size_t>, Curve> curves;  // by pose and freedom
+    std::vector<Curve> curves;  // by freedom, at one pose after the other
+    std::size_t pose = 0;
     return changed(place, leg, side_by_side, data, [&](Here here, const Vector6& g, const Vector6& F) {
-      const auto [at, is_new] = curves.emplace(std::pair(here.pose, here.freedom), nullptr);
-      if (is_new) at->second = at_rest();
-      return at->second(floats(g, F, size_) ? 0 : g.dot(F));
+      if (here.pose != pose) curves.clear();
+      pose = here.pose;
+      while (curves.size() <= here.freedom) curves.push_back(at_rest());
+      return curves[here.freedom](floats(g, F, size_) ? 0 : g.dot(F));
     });
   }
 
