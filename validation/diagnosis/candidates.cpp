@@ -98,18 +98,18 @@ class Candidates::Round {
         out_(all.signatures_.size()) {
     const MatrixX fitted = statistics::orthonormal(so_far.signature);
     const MatrixX proportional = statistics::orthonormal(columns_of_unshaped(before, so_far.signature));
-    for (std::size_t i = 0; i < out_.size(); ++i) {
+    const bool some_shaped = proportional.cols() < fitted.cols();
+    allowed_.resize(out_.size()), said_.resize(out_.size());
+    parallel::for_each_case(out_.size(), 1, all.threads_, [&](std::size_t i) {
       const Signature& s = signature(i);
-      out_[i].hypothesis = before;
-      out_[i].hypothesis.push_back(s.effect);
-      allowed_.push_back(!is_among(before, s.effect) && own_share(s, proportional) > of_its_own);
-      said_.push_back(
-          !allowed_[i] || wrong_way(s, so_far.residual)
-              ? 0
-              : std::max(most_gain(s, so_far.residual, fitted), most_gain(s, so_far.residual, proportional)));
+      (out_[i].hypothesis = before).push_back(s.effect);
+      allowed_[i] = !is_among(before, s.effect) && own_share(s, proportional) > of_its_own;
+      const bool may = allowed_[i] && !wrong_way(s, so_far.residual);
+      if (may) said_[i] = most_gain(s, so_far.residual, fitted);
+      if (may && some_shaped) said_[i] = std::max(said_[i], most_gain(s, so_far.residual, proportional));
       out_[i].gain = said_[i];
       out_[i].log_odds = allowed_[i] ? all_.log_odds(i, said_[i], all_.priors_[i]) : out_of_question;
-    }
+    });
     for (std::size_t i = 0; i < out_.size(); ++i)
       if (is_known(i)) class_of_known_ = all_.classes_[i];
     if (!said_.empty()) most_ = *std::max_element(said_.begin(), said_.end());

@@ -25,7 +25,6 @@ constexpr double even_hopeless = -1e6;  // ln of odds: every candidate is looked
 constexpr double sure = 0.7, rather_nothing = 0.5;  // probabilities: something unknown is there, nothing is missing
 constexpr double unknown_beside = Candidates::prior_unknown / (1 - Candidates::prior_unknown);  // odds
 constexpr int most_rounds = 3;
-constexpr double falls_clearly = 0.75;
 
 Quality quality(const Observations& o, const Hypothesis& h, const Fit& f) {
   Quality q;
@@ -184,6 +183,7 @@ bool is_missing_or_larger(const Diagnosis& d) {
 struct Explained {
   Selection found;
   LeftOver left;
+  std::size_t granted = 0;  ///< effects that counted as right
   /// Whitened with what the effects have changed; hundreds of columns, so kept only where `left` is significant.
   std::shared_ptr<const WhitenedFamilies> patterns = nullptr;
 };
@@ -196,6 +196,7 @@ Explained explained(const FirstStep& s, const Candidates& candidates, const std:
   };
   const auto enough = [&](const Selection& f) { return is_all_at_one_place(places_of(f), candidates, f); };
   Explained out{select(s.observations, candidates, first, enough), {}};
+  out.granted = out.found.effects.size();
   out.patterns = out.found.observations.whitened_patterns();
   const ByPlaces places = places_of(out.found);
   out.left = left_over(out.patterns, places.beside, out.found.fit);
@@ -272,8 +273,15 @@ Verdict verdict_of(const Diagnosis& d) {
   return d.indistinguishable.empty() ? Verdict::effect : Verdict::ambiguous;
 }
 
+/// With the observations in which all that it names, and nothing else, counts as right, where they are at hand.
+struct Diagnosed {
+  Diagnosis diagnosis;
+  std::optional<Observations> seen = std::nullopt;
+};
+
 /// What was found and what it leaves. `told`: the first step that the diagnosis tells of.
-void conclude(Diagnosis& d, Explained e, const FirstStep& told, const measurement::Measurements& data, int threads) {
+Diagnosed conclude(Diagnosis d, Explained e, const FirstStep& told, const measurement::Measurements& data,
+                   int threads) {
   const double together = log_odds_together(told, e);
   Selection found = std::move(e.found);
   // A search that went by another effect can find a better fit of one than the first step did.
@@ -302,13 +310,15 @@ void conclude(Diagnosis& d, Explained e, const FirstStep& told, const measuremen
   d.strained = seen.strained(subject_with(seen, d.missing, d.fit.values));
   d.set_aside = seen.set_aside();
   d.in_play = seen.in_play();
+  if (d.missing.size() != e.granted) return {std::move(d)};
+  return {std::move(d), std::move(found.observations)};
 }
 
-Diagnosis diagnosed(const Observations& o, const measurement::Measurements& data,
+Diagnosed diagnosed(const Observations& o, const measurement::Measurements& data,
                     const std::vector<effects::Effect>& effects, const DiagnosisOptions& options,
                     const parallel::Work& work) {
   Diagnosis d = before_any_effect(o, data);
-  if (is_mistaken(d)) return only_mistakes(std::move(d), o);
+  if (is_mistaken(d)) return {only_mistakes(std::move(d), o)};
   d.bootstrap_sets = options.bootstrap_sets;
   Rounds rounds(work.progress, 0.3);
   std::optional<FirstStep> step;
@@ -324,10 +334,7 @@ Diagnosis diagnosed(const Observations& o, const measurement::Measurements& data
     Explained several = explained(*step, step->candidates, step->each);
     if (outweigh_larger_tolerances(several, *step)) e = std::move(several);
   }
-  if (e.found.observations.aside() == o.aside()) {
-    conclude(d, std::move(e), *step, data, work.threads);
-    return d;
-  }
+  if (e.found.observations.aside() == o.aside()) return conclude(std::move(d), std::move(e), *step, data, work.threads);
   // A gross outlier where nothing is missing may be none beside what was found, and the reverse: all is asked anew.
   const Observations kept = o.keeping(e.found.observations.aside());
   parallel::Work again = work;
@@ -337,34 +344,16 @@ Diagnosis diagnosed(const Observations& o, const measurement::Measurements& data
   step.emplace(kept, std::move(weighed), options.bootstrap_sets, rounds, again);
   tell(d, *step, large ? step->candidates.in_larger_sizes().beside(kept, {}, step->null, even_hopeless) : step->each);
   const bool stays = is_missing(d, *step) || outweigh_larger_tolerances(e, *step);
-  conclude(d, stays ? std::move(e) : nothing(*step), *step, data, work.threads);
-  return d;
+  return conclude(std::move(d), stays ? std::move(e) : nothing(*step), *step, data, work.threads);
 }
 
-/// σ of every measured number as the subject with what was found leaves it. Empty where all of them are told, or none
-/// of the others falls by a quarter: a few effects chosen out of hundreds take some off by chance.
-std::vector<double> noise_beside(const Observations& o, const Diagnosis& d, const measurement::Measurements& data,
-                                 compare::ComparisonOptions options, const parallel::Work& work) {
-  const compare::Comparison& before = o.comparison();
-  if (d.missing.empty() || !compare::is_any_estimated(before)) return {};
-  options.as_recorded = true;
-  options.sigma.clear();
-  const auto after = outcome_of(
-      [&] { return compare::compare(subject_with(o, d.missing, d.fit.values), data, options, work.quiet()).sigma; });
-  if (!after) return {};
-  for (std::size_t i = 0; i < after->size(); ++i)
-    if ((*after)[i] < falls_clearly * before.sigma[i]) return *after.value;
-  return {};
-}
-
-/// How large tolerances look beside what was found. Where that is not all, larger ones must be likelier than something
-/// unknown.
-double scale_beside(const Observations& o, const Diagnosis& d) {
+/// How large tolerances look beside what was found.
+double scale_beside(const Observations& o, Diagnosed& found) {
+  const Diagnosis& d = found.diagnosis;
   if (d.missing.empty()) return o.tolerance_scale();
   const subject::Subject right = subject_with(o, d.missing, d.fit.values);
-  const Observations seen = o.granted(right);
-  if (d.unexplained && larger_tolerances(seen.about(right)).log_odds < d.log_odds_unknown) return o.tolerance_scale();
-  return tolerance_scale_beside(seen, right);
+  if (!found.seen) found.seen = o.granted(right);
+  return tolerance_scale_beside(*found.seen, right, d.unexplained ? std::optional(d.log_odds_unknown) : std::nullopt);
 }
 
 }  // namespace
@@ -380,15 +369,18 @@ Diagnosis diagnose(const subject::Subject& subject, const measurement::Measureme
   double tolerances = 1;  // times as declared
   for (int round = 1;; ++round) {
     const Observations o(subject, data, asked.comparison, again.part(0, 0.2), tolerances);
-    Diagnosis d = diagnosed(o, data, effects, asked, again);
+    Diagnosed found = diagnosed(o, data, effects, asked, again);
+    Diagnosis& d = found.diagnosis;
     if (round == 1) mistakes = d.mistakes;
     d.mistakes = mistakes;
-    if (round == most_rounds) return d;
+    if (round == most_rounds) return std::move(d);
     // Noise that nobody tells was read off what no pattern explains; what was found may have been part of it.
     // Tolerances may be larger than declared beside what was found. Whether the data are right has been settled.
-    std::vector<double> sigma = noise_beside(o, d, data, asked.comparison, work);
-    const double beside = sigma.empty() ? scale_beside(o, d) : tolerances;
-    if (sigma.empty() && beside == tolerances) return d;
+    std::vector<double> sigma;
+    if (!d.missing.empty())
+      sigma = noise_beside(o.comparison(), subject_with(o, d.missing, d.fit.values), data, asked.comparison, work);
+    const double beside = sigma.empty() ? scale_beside(o, found) : tolerances;
+    if (sigma.empty() && beside == tolerances) return std::move(d);
     if (!sigma.empty()) asked.comparison.sigma = std::move(sigma);
     tolerances = beside;
     asked.comparison.as_recorded = true;

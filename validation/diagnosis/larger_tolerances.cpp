@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "msa/base/index.h"
+#include "msa/base/outcome.h"
 #include "validation/diagnosis/evidence.h"
 
 namespace deflect::diagnosis {
@@ -13,6 +14,7 @@ constexpr double largest_tolerances = 3;  // times as declared
 constexpr int sizes_tried = 24;
 constexpr double rise_that_shows = 2;  // of ln of the likelihood
 constexpr double same_size = 0.1;      // ln of a ratio
+constexpr double falls_clearly = 0.75;
 
 }  // namespace
 
@@ -32,7 +34,8 @@ LargerTolerances larger_tolerances(const Observations& o, double prior) {
   return out;
 }
 
-double tolerance_scale_beside(const Observations& o, const subject::Subject& right) {
+double tolerance_scale_beside(const Observations& o, const subject::Subject& right, std::optional<double> unknown) {
+  if (unknown && larger_tolerances(o.about(right)).log_odds < *unknown) return o.tolerance_scale();
   std::vector<double> scales = log_spaced(1, largest_tolerances, sizes_tried);
   std::vector<double> weighed = scales;
   for (double& s : weighed) s /= o.tolerance_scale();
@@ -40,6 +43,19 @@ double tolerance_scale_beside(const Observations& o, const subject::Subject& rig
   const auto best = std::max_element(likelihood.begin(), likelihood.end());
   const double out = *best > likelihood.front() + rise_that_shows ? nth(scales, best - likelihood.begin()) : 1;
   return std::abs(std::log(out / o.tolerance_scale())) < same_size ? o.tolerance_scale() : out;
+}
+
+std::vector<double> noise_beside(const compare::Comparison& before, const subject::Subject& right,
+                                 const measurement::Measurements& data, compare::ComparisonOptions options,
+                                 const parallel::Work& work) {
+  if (!compare::is_any_estimated(before)) return {};
+  options.as_recorded = true;
+  options.sigma.clear();
+  const auto after = outcome_of([&] { return compare::compare(right, data, options, work.quiet()).sigma; });
+  if (!after) return {};
+  for (std::size_t i = 0; i < after->size(); ++i)
+    if ((*after)[i] < falls_clearly * before.sigma[i]) return *after.value;
+  return {};
 }
 
 std::vector<double> log_weights(const std::vector<Candidate>& all, const LargerTolerances& larger, double together) {

@@ -24,8 +24,13 @@ LargerTolerances larger_tolerances(const Observations&, double prior = 0.5);
 
 /// How large tolerances look beside what was found, times as declared: the likeliest of 1 … 3 where this subject counts
 /// as right, or 1 unless that raises ln of the likelihood by more than 2. As large as they count already where that is
-/// nearly the same.
-double tolerance_scale_beside(const Observations&, const subject::Subject&);
+/// nearly the same, and where something unknown, of which `unknown` is ln of the odds, is likelier than larger ones.
+double tolerance_scale_beside(const Observations&, const subject::Subject&, std::optional<double> unknown);
+
+/// σ of every measured number as this subject leaves it. Empty where all of them are told, or none of the others falls
+/// by a quarter: a few effects chosen out of hundreds take some off by chance.
+std::vector<double> noise_beside(const compare::Comparison& before, const subject::Subject&,
+                                 const measurement::Measurements&, compare::ComparisonOptions, const parallel::Work&);
 
 inline constexpr double not_several = -1e9;  ///< ln of the odds of several effects where there are none
 
