@@ -197,8 +197,8 @@ Explained explained(const FirstStep& s, const Candidates& candidates, const std:
   const auto enough = [&](const Selection& f) { return is_all_at_one_place(places_of(f), candidates, f); };
   Explained out{select(s.observations, candidates, first, enough), {}};
   out.granted = out.found.effects.size();
-  out.patterns = out.found.observations.whitened_patterns();
   const ByPlaces places = places_of(out.found);
+  out.patterns = out.found.observations.whitened_patterns();
   out.left = left_over(out.patterns, places.beside, out.found.fit);
   const double more = out.left.significant() ? 0 : clearly_one_place;
   if (std::optional<AllAtOnePlace> at = at_one_place(places, candidates, out.found, more)) {
