@@ -193,6 +193,9 @@ TEST(AtOnePlace, WhatIsElsewhereIsNotNamedBesideACurveWithKneesInEveryLeg) {
   const Selection found{o, two, fit_of_all(o, two, test::values({3.6e6, 2.7e-4, 0.5})), {}, {}};
   ASSERT_TRUE(found.fit.found);
   const ByPlaces laws = by_places(signatures.known(), found, 2);
+  // Beside several fits at once they are what they are beside each.
+  EXPECT_EQ(log_evidence(laws.alone), log_evidence(at_places(signatures.known(), {}, laws.null, 2)));
+  EXPECT_EQ(log_evidence(laws.beside), log_evidence(at_places(signatures.known(), two, found.fit, 2)));
   EXPECT_TRUE(is_all_at_one_place(laws, candidates, found));
   const std::optional<AllAtOnePlace> at = at_one_place(laws, candidates, found, clearly_one_place);
   ASSERT_TRUE(at);
