@@ -240,16 +240,16 @@ std::vector<std::vector<AtPlace>> at_places(const Weighed& all, const std::vecto
       out[k][i] = explained_by(here, places[i], beside[k].fit.residual, fitted[k], {});
   });
   for (std::size_t k = 0; k < beside.size(); ++k) {
-    const auto& [effects, fit] = beside[k];
+    const Fitted& one = beside[k];
     const auto try_curves = [&](const std::vector<std::size_t>& where, std::span<const Curves> curves) {
       parallel::for_each_case(where.size(), 1, threads, [&](std::size_t j) {
         const LawsAtPlace& place = places[where[j]];
-        out[k][where[j]] = explained_by({all, place}, place, fit.residual, fitted[k], curves);
+        out[k][where[j]] = explained_by({all, place}, place, one.fit.residual, fitted[k], curves);
       });
     };
-    const std::vector<std::size_t> curved = worth_any_curve(places, out[k], effects);
+    const std::vector<std::size_t> curved = worth_any_curve(places, out[k], one.effects);
     try_curves(curved, curves_tried_first);
-    try_curves(worth_finer_lines(curved, out[k], fit), all_curves);
+    try_curves(worth_finer_lines(curved, out[k], one.fit), all_curves);
     std::erase_if(out[k], [](const AtPlace& p) { return p.spans.empty(); });
   }
   return out;
