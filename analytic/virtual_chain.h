@@ -166,8 +166,8 @@ struct VirtualChain {
   Progress follow(const Vector6& t, const VectorX& mu, const ShapeConditions&);
 
   const Restraint& restraint() const { return restraint_; }  ///< of the last restrain()
-  /// Likewise: the smallest motion of the end by passive freedoms beside the largest, rotations weighed by the length;
-  /// 0 in a singular position, 1 without passive freedoms.
+  /// Of the last restrain() that was ShapeConditions::judged: the smallest motion of the end by passive freedoms beside
+  /// the largest, rotations weighed by the length; 0 in a singular position, 1 without passive freedoms.
   double mobility() const;
   /// Adds the strain energy of each part in an equilibrium, J.
   void add_energies(const ShapeConditions&, std::map<std::string, double>&) const;

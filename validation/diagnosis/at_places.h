@@ -68,7 +68,7 @@ struct AtPlace {
 /// the result.
 std::vector<AtPlace> at_places(const Weighed&, const Hypothesis& fitted, const Fit&, int threads);
 
-/// The same beside several fits that are weighed alike, of each one: the columns of a place are found once.
+/// The same beside each of several fits that are weighed alike. What a law does there is found once for all of them.
 struct Fitted {
   const Hypothesis& effects;
   const Fit& fit;

@@ -14,7 +14,7 @@ namespace {
 constexpr double agreed = 1e-2;
 constexpr double unseen = 1e-6;      // standard deviations of noise
 constexpr double sampled = 0.125;    // share of the readings that leave play open which is asked whether it shows
-constexpr double most_sampled = 64;  // of them
+constexpr double most_sampled = 64;  // readings at most that are asked
 constexpr double rounding = 1e-11;   // of a prediction: less is no change
 constexpr double part_of_a_load = 0.1;
 constexpr double hundredth = 1e-2;  // of a machine's load, of its size, or rad
