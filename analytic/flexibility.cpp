@@ -54,7 +54,9 @@ MatrixX reduced(MatrixX columns) {
   return columns;
 }
 
-/// Whether columns span all for certain: by the Cholesky factors of their Gram matrix, which know ratios down to 1e-5.
+}  // namespace
+
+// By the Cholesky factors of the Gram matrix, which know ratios down to 1e-5.
 bool plainly_span(const MatrixX& columns) {
   if (columns.cols() < columns.rows()) return false;
   const MatrixX gram = columns * columns.transpose();
@@ -62,8 +64,6 @@ bool plainly_span(const MatrixX& columns) {
   return llt.info() == Eigen::Success &&
          llt.matrixLLT().diagonal().cwiseAbs2().minCoeff() > 1e-10 * gram.diagonal().maxCoeff();
 }
-
-}  // namespace
 
 MatrixX complement(const MatrixX& columns) {
   if (columns.cols() == 0) return MatrixX::Identity(columns.rows(), columns.rows());

@@ -26,6 +26,8 @@ struct Flexibility {
 
 /// An orthonormal basis of the vectors perpendicular to all columns; columns count as linearly dependent within 1e-9.
 MatrixX complement(const MatrixX& columns);
+/// Whether columns span all for certain; where they do so only just, false.
+bool plainly_span(const MatrixX& columns);
 
 /// An orthonormal basis of the wrenches F with JᵀF = 0, moments weighed by `length` (m).
 Matrix6X carried_wrenches(const Matrix6X& J, double length);

@@ -36,9 +36,11 @@ struct Column {
   int tip = -1;  // rotations of one tip belong together
 };
 
-void add_columns(const VirtualJoint& v, const RigidMotion& before, std::vector<Column>& columns) {
+/// Of a joint that has moved by x.
+void add_columns(const VirtualJoint& v, const std::array<double, 6>& x, const RigidMotion& before,
+                 std::vector<Column>& columns) {
   Matrix3 axes = before.R() * v.joint.R_WJ;
-  const Vector3 point = before(v.joint.p_W + v.joint.R_WJ * Vector3(v.x[0], v.x[1], v.x[2]));
+  const Vector3 point = before(v.joint.p_W + v.joint.R_WJ * Vector3(x[0], x[1], x[2]));
   std::size_t next = 0;
   for (std::size_t i = 0; i < 6; ++i) {
     const Vector3 axis = axes.col(as_index(i % 3));
@@ -46,7 +48,7 @@ void add_columns(const VirtualJoint& v, const RigidMotion& before, std::vector<C
       columns.push_back(i < 3 ? Column{Vector3::Zero(), axis} : Column{axis, point});
       ++next;
     }
-    if (i >= 3) axes = Eigen::AngleAxisd(v.x[i], axis) * axes;
+    if (i >= 3) axes = Eigen::AngleAxisd(x[i], axis) * axes;
   }
 }
 
@@ -72,9 +74,7 @@ Freedoms freedoms_of(const std::vector<VirtualStep>& steps, bool finite) {
   for (const VirtualStep& step : steps) {
     out.first.push_back(std::ssize(out.columns));
     if (const auto* joint = std::get_if<VirtualJoint>(&step)) {
-      VirtualJoint there = *joint;
-      if (!finite) there.x = {};
-      add_columns(there, out.end, out.columns);
+      add_columns(*joint, finite ? joint->x : std::array<double, 6>{}, out.end, out.columns);
       for (const std::size_t i : joint->freedoms) out.x.push_back(joint->x[i]);
     } else {
       Tip tip = std::holds_alternative<VirtualMember>(step) ? std::get<VirtualMember>(step).tip
@@ -194,6 +194,7 @@ std::optional<Vector6> let_through(const Vector6& F, const Linearised& l, const 
   Vector6 w = Vector6::Ones();
   w.tail<3>().setConstant(length);
   const MatrixX moves = w.asDiagonal() * twists(Eigen::all, passive) * l.scale(passive).asDiagonal();
+  if (plainly_span(moves.transpose())) return std::nullopt;
   Eigen::ColPivHouseholderQR<MatrixX> qr;
   qr.setThreshold(1e-9);
   qr.compute(moves);
