@@ -132,8 +132,8 @@ TEST(Signatures, InnerProductsAreTheSameWhateverTheThreads) {
   for (const int threads : {2, 5}) EXPECT_EQ(inner_products(all, threads), alone);
 }
 
-// All laws at places together weigh 15 % of the entries, and none more than an entry.
-TEST(Signatures, LawsAtPlacesTogetherWeighAsLittleAsSaid) {
+// All laws at places together weigh half as much as the entries, and none more than an entry.
+TEST(Signatures, LawsAtPlacesTogetherWeighHalfAsMuchAsTheEntries) {
   effects::Effect place = test::effect("modulus");
   place.place.emplace();
   const auto weights = [&](int entries, int places) {
@@ -146,7 +146,8 @@ TEST(Signatures, LawsAtPlacesTogetherWeighAsLittleAsSaid) {
   EXPECT_EQ(weights(0, 3), std::vector<double>(3, 1));
   const std::vector<double> many = weights(20, 60), few = weights(20, 2);
   EXPECT_EQ(many[0], 1);
-  EXPECT_NEAR(many[25], 0.15 * 20 / 60, 1e-15);
+  EXPECT_NEAR(many[25], 0.5 * 20 / 60, 1e-15);
+  EXPECT_NEAR(std::accumulate(many.begin() + 20, many.end(), 0.0), 0.5 * 20, 1e-12);
   EXPECT_EQ(few[21], 1);
 }
 
@@ -160,13 +161,13 @@ TEST(Signatures, ALawInOneLegWeighsAsOneInAllLegs) {
   all[2].effect = {&every, {}};
   for (int leg = 1; leg <= 6; ++leg) all.emplace_back().effect = {&one, leg};
   const std::vector<double> weights = weights_of(all);
-  EXPECT_NEAR(weights[2], 0.15 * 2 / 2, 1e-15);
+  EXPECT_NEAR(weights[2], 0.5 * 2 / 2, 1e-15);
   for (std::size_t i = 3; i < all.size(); ++i) EXPECT_NEAR(weights[i], weights[2] / 6, 1e-15);
   std::vector<std::size_t> classes(all.size());
   std::iota(classes.begin(), classes.end(), std::size_t{0});
   const std::vector<double> priors = shared_priors(all, classes, 0.7);
   EXPECT_NEAR(std::accumulate(priors.begin() + 3, priors.end(), 0.0), priors[2], 1e-15);
-  EXPECT_NEAR(priors[2] / priors[0], 0.15, 1e-12);
+  EXPECT_NEAR(priors[2] / priors[0], 0.5, 1e-12);
 }
 
 /// With one parameter from `low` to `high` that starts at `start`.

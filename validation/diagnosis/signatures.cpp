@@ -246,7 +246,7 @@ void SignaturesAtPlaces::weigh(const Observations& o, int threads, const ChangeO
 }
 
 std::vector<double> weights_of(const std::vector<Signature>& all) {
-  constexpr double share_of_places = 0.15;
+  constexpr double share_of_places = 0.5;  // of the entries
   const auto is_place = [](const Signature& s) { return s.effect.effect && s.effect.effect->place; };
   const std::map<std::string, double> legs = count_by_name(all);
   const auto share = [&](const Signature& s) { return s.effect.leg ? 1 / legs.at(s.effect.effect->name) : 1; };

@@ -106,9 +106,10 @@ class SignaturesAtPlaces {
 std::vector<Signature> signatures(const Observations&, const std::vector<effects::Effect>&, int threads,
                                   std::vector<LeftOut>* left_out = nullptr);
 
-/// Prior weight of each signature: 1 for one of an entry of the catalogue; all laws at places together at most 15 % of
-/// the entries, so that they do not outvote them. 1 for each where there are no entries. A law in one leg weighs as
-/// much, in all legs together, as one in all legs alike.
+/// Prior weight of each signature: 1 for one of an entry of the catalogue; all laws at places together at most half of
+/// the entries, so that hundreds of them do not outvote these. 1 for each where there are no entries. A law in one leg
+/// weighs as much, in all legs together, as one in all legs alike. A choice: of three things that are missing one is
+/// not in the catalogue.
 std::vector<double> weights_of(const std::vector<Signature>&);
 
 /// The value at which the effect best explains the residual, if its signature grows in proportion to the distance from
