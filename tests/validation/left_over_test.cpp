@@ -287,9 +287,13 @@ TEST(AtOnePlace, StandsForEffectsThatAddUpToIt) {
                                test::springs_apart::along("b", r * (axis(2) + axis(3)))};
   for (Effect& e : known) e.place.emplace().path = "part";
   for (int i = 0; i < 4; ++i) known.push_back(test::springs_apart::along(fmt::format("e{}", i), axis(i)));
+  // Others, so that each is as rare before any reading as one of a catalogue is.
+  for (int i = 0; i < 6; ++i)
+    for (int k = i + 1; k < 6; ++k)
+      known.push_back(test::springs_apart::along(fmt::format("e{}{}", i, k), r * (axis(i) - axis(k))));
   const test::springs_apart::Seen s = test::springs_apart::seen(20 * (axis(0) + axis(1) + axis(2) + axis(3)));
   const Explanations all{signatures(s.observations, known, 1)};
-  ASSERT_EQ(all.laws.size(), 6u);
+  ASSERT_EQ(all.laws.size(), 21u);
   const Candidates candidates(all.laws, 1);
   const auto found = [&](const std::vector<std::size_t>& which, const VectorX& values) {
     Hypothesis h;

@@ -9,6 +9,7 @@
 
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
+#include "tests/support/springs_apart.h"
 #include "validation/diagnosis/evidence.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
@@ -171,6 +172,32 @@ TEST(Selection, TwoEffectsAreFoundThatAThirdResembles) {
   for (const PlacedEffect& e : found.effects) names.push_back(e.effect->name);
   std::sort(names.begin(), names.end());
   EXPECT_EQ(names, (std::vector<std::string>{"base_tilt", "guide_root_compliance"}));
+}
+
+// A law at a place that does the same as an entry and is ten times as rare before any reading is not told beside it;
+// another entry that does nearly the same is. By the definition they have 0.61, 0.33 and 0.06.
+TEST(Selection, AnEntryStandsForTheLawThatDoesTheSame) {
+  const auto axis = [](Eigen::Index i) { return VectorX::Unit(6, i); };
+  std::vector<Effect> known = {
+      test::springs_apart::along("entry", axis(0)),
+      test::springs_apart::along("nearly", std::cos(0.06) * axis(0) + std::sin(0.06) * axis(1)),
+      test::springs_apart::along("law", axis(0))};
+  for (int i = 2; i < 5; ++i)
+    for (int k = 0; k < 3; ++k)
+      known.push_back(test::springs_apart::along(fmt::format("law_{}{}", i, k), axis(i) + k * axis(5)));
+  for (std::size_t i = 2; i < known.size(); ++i) known[i].place.emplace().path = "part";
+  const test::springs_apart::Seen s = test::springs_apart::seen(20 * axis(0));
+  const std::vector<Signature> all = signatures(s.observations, known, 1);
+  ASSERT_EQ(all.size(), 12u);
+  ASSERT_NEAR(weights_of(all)[2], 0.1, 1e-12);
+  const Candidates candidates(all, 1);
+  const Fit null = fit_of_all(s.observations, {}, VectorX(0));
+  const Selection found = select(s.observations, candidates, candidates.beside(s.observations, {}, null, -1e6));
+  ASSERT_EQ(found.effects.size(), 1u);
+  ASSERT_EQ(found.ties.size(), 1u);
+  EXPECT_EQ(found.ties[0].names, (std::vector<std::string>{"entry", "nearly"}));
+  ASSERT_EQ(found.ties[0].rivals.size(), 2u);
+  EXPECT_NEAR(found.ties[0].rivals[0].probability, 0.61, 0.02);
 }
 
 }  // namespace

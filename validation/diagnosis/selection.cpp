@@ -18,6 +18,7 @@ constexpr std::size_t usual_effects = 4, most_effects = 6, most_rounds = 12;
 constexpr double own_part_of_many = 0.5;       // of χ²: what more effects than usual must take off, each
 constexpr double sure = 0.9, together = 0.95;  // probabilities: of one alone; of those that tie
 constexpr double better = 1;                   // ln of the odds for which one effect is taken for another
+constexpr double far_rarer = 1.5;              // ln of the odds before any reading, of two that are one to these data
 constexpr double never = -1e6;
 constexpr double as_good = 1;    // of χ²
 constexpr double far_worse = 2;  // times the error in the shape that was granted before
@@ -320,6 +321,14 @@ class Search {
     return runs_to_a_bound(c.hypothesis, c.fit) || leaves_one_open(c) || simpler_form(c, all);
   }
 
+  /// Whether a member of its own class stands for it: these data cannot tell the two apart, and before any reading this
+  /// one is far rarer, as a law at a place beside an entry that does the same.
+  static bool is_stood_for(const Candidate& c, const Tie& group) {
+    return std::any_of(group.rivals.begin(), group.rivals.end(), [&](const Candidate& r) {
+      return r.class_log_odds == c.class_log_odds && r.log_odds > c.log_odds + far_rarer;
+    });
+  }
+
   Tie tie(const std::vector<Candidate>& all) const {
     std::vector<double> log_odds;
     for (const Candidate& c : all) log_odds.push_back(c.fit.found && !is_another(c, all) ? c.log_odds : never);
@@ -332,7 +341,8 @@ class Search {
     double sum = 0;
     for (const std::size_t i : by) {
       const std::string& name = all[i].added().effect->name;
-      if (std::find(group.names.begin(), group.names.end(), name) == group.names.end()) {
+      if (std::find(group.names.begin(), group.names.end(), name) == group.names.end() &&
+          !is_stood_for(all[i], group)) {
         group.names.push_back(name);
         group.rivals.push_back(all[i]);
         group.rivals.back().probability = among[i];
