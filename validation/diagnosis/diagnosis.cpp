@@ -238,17 +238,13 @@ bool outweigh_larger_tolerances(const Explained& e, const FirstStep& s) {
   return normalised({log_odds_together(s, e), s.larger.log_odds, 0}).front() > 1 - rather_nothing;
 }
 
-/// Whether a single large effect may explain more than what was found: that is several, or leaves more than noise does.
-bool may_hide_a_large_one(const Explained& e, const Observations& o) {
-  const double by_noise = most_by_noise(static_cast<double>(o.numbers()));
-  return e.left.significant() || e.found.effects.size() > 1 || e.found.fit.chi2 > by_noise;
-}
-
-/// Effects are looked for from small sizes. What is found from a large one, if it leaves nothing unknown and, where the
-/// others do not either, is likelier; returns the candidates for the first effect then.
+/// Effects are looked for from small sizes. Where several were found, or more than noise is left: what is found from a
+/// large size, if it leaves nothing unknown and, where the others do not either, is likelier; returns the candidates
+/// for the first effect then.
 std::optional<std::vector<Candidate>> look_for_large_ones(Explained& e, const FirstStep& s) {
   const Observations& o = s.observations;
-  if (!may_hide_a_large_one(e, o)) return std::nullopt;
+  const double by_noise = most_by_noise(static_cast<double>(o.numbers()));
+  if (!e.left.significant() && e.found.effects.size() < 2 && e.found.fit.chi2 <= by_noise) return std::nullopt;
   auto large = s.candidates.likelier_if_larger(o, {}, s.null, s.each, e.left.significant());
   if (!large) return std::nullopt;
   const auto best = std::max_element(large->begin(), large->end(), [](const Candidate& a, const Candidate& b) {
@@ -314,6 +310,17 @@ Diagnosed conclude(Diagnosis d, Explained e, const FirstStep& told, const measur
   return {std::move(d), std::move(found.observations)};
 }
 
+/// Than the one that was found, if it is one, with other readings set aside.
+bool is_another_likelier(const std::vector<Candidate>& all, const Selection& found) {
+  if (found.effects.size() != 1) return false;
+  double most = even_hopeless, own = even_hopeless;
+  for (const Candidate& c : all) {
+    most = std::max(most, c.class_log_odds);
+    if (same(c.added(), found.effects.front())) own = c.class_log_odds;
+  }
+  return most > own;
+}
+
 Diagnosed diagnosed(const Observations& o, const measurement::Measurements& data,
                     const std::vector<effects::Effect>& effects, const DiagnosisOptions& options,
                     const parallel::Work& work) {
@@ -344,6 +351,7 @@ Diagnosed diagnosed(const Observations& o, const measurement::Measurements& data
   step.emplace(kept, std::move(weighed), options.bootstrap_sets, rounds, again);
   tell(d, *step, large ? step->candidates.in_larger_sizes().beside(kept, {}, step->null, even_hopeless) : step->each);
   const bool stays = is_missing(d, *step) || outweigh_larger_tolerances(e, *step);
+  if (stays && is_another_likelier(d.candidates, e.found)) e = explained(*step, step->candidates, d.candidates);
   return conclude(std::move(d), stays ? std::move(e) : nothing(*step), *step, data, work.threads);
 }
 
