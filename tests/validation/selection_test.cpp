@@ -200,5 +200,27 @@ TEST(Selection, AnEntryStandsForTheLawThatDoesTheSame) {
   EXPECT_NEAR(found.ties[0].rivals[0].probability, 0.61, 0.02);
 }
 
+// Two laws that begin alike and are as likely before any reading. What the second one bends, 1.9 standard deviations
+// here, makes it the less likely one, 1 : 6; it is no other name of the first.
+TEST(Selection, ALawThatIsLessLikelyByTheReadingsStaysInATie) {
+  const auto bent = [](const VectorX& values) {
+    return VectorX(values(0) * VectorX::Unit(6, 0) + 0.0047 * values(0) * values(0) * VectorX::Unit(6, 1));
+  };
+  const std::vector<Effect> known = {
+      test::springs_apart::along("line", VectorX::Unit(6, 0)),
+      test::springs_apart::effect("bent", {test::springs_apart::parameter("size", 1, -1000, 1000, 0.0)}, bent)};
+  const test::springs_apart::Seen s = test::springs_apart::seen(20 * VectorX::Unit(6, 0));
+  const std::vector<Signature> all = signatures(s.observations, known, 1);
+  const Candidates candidates(all, 1);
+  const Fit null = fit_of_all(s.observations, {}, VectorX(0));
+  const std::vector<Candidate> first = candidates.beside(s.observations, {}, null, -1e6);
+  ASSERT_EQ(first.size(), 2u);
+  ASSERT_EQ(first[0].class_log_odds, first[1].class_log_odds);
+  ASSERT_GT(first[0].log_odds, first[1].log_odds + 1.5);
+  const Selection found = select(s.observations, candidates, first);
+  ASSERT_EQ(found.ties.size(), 1u);
+  EXPECT_EQ(found.ties[0].names, (std::vector<std::string>{"line", "bent"}));
+}
+
 }  // namespace
 }  // namespace deflect

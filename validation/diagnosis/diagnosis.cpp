@@ -312,13 +312,10 @@ Diagnosed conclude(Diagnosis d, Explained e, const FirstStep& told, const measur
 
 /// Than the one that was found, if it is one, with other readings set aside.
 bool is_another_likelier(const std::vector<Candidate>& all, const Selection& found) {
-  if (found.effects.size() != 1) return false;
-  double most = even_hopeless, own = even_hopeless;
-  for (const Candidate& c : all) {
-    most = std::max(most, c.class_log_odds);
-    if (same(c.added(), found.effects.front())) own = c.class_log_odds;
-  }
-  return most > own;
+  const auto own =
+      std::find_if(all.begin(), all.end(), [&](const auto& c) { return is_among(found.effects, c.added()); });
+  return found.effects.size() == 1 && own != all.end() &&
+         std::any_of(all.begin(), all.end(), [&](const auto& c) { return c.class_log_odds > own->class_log_odds; });
 }
 
 Diagnosed diagnosed(const Observations& o, const measurement::Measurements& data,
@@ -349,9 +346,10 @@ Diagnosed diagnosed(const Observations& o, const measurement::Measurements& data
   SignaturesAtPlaces weighed = std::move(step->signatures);
   weighed.weigh_for(kept, work.threads);
   step.emplace(kept, std::move(weighed), options.bootstrap_sets, rounds, again);
-  tell(d, *step, large ? step->candidates.in_larger_sizes().beside(kept, {}, step->null, even_hopeless) : step->each);
+  const Candidates candidates = large ? step->candidates.in_larger_sizes() : step->candidates;
+  tell(d, *step, large ? candidates.beside(kept, {}, step->null, even_hopeless) : step->each);
   const bool stays = is_missing(d, *step) || outweigh_larger_tolerances(e, *step);
-  if (stays && is_another_likelier(d.candidates, e.found)) e = explained(*step, step->candidates, d.candidates);
+  if (stays && is_another_likelier(d.candidates, e.found)) e = explained(*step, candidates, d.candidates);
   return conclude(std::move(d), stays ? std::move(e) : nothing(*step), *step, data, work.threads);
 }
 

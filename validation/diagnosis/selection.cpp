@@ -325,7 +325,8 @@ class Search {
   /// one is far rarer, as a law at a place beside an entry that does the same.
   static bool is_stood_for(const Candidate& c, const Tie& group) {
     return std::any_of(group.rivals.begin(), group.rivals.end(), [&](const Candidate& r) {
-      return r.class_log_odds == c.class_log_odds && r.log_odds > c.log_odds + far_rarer;
+      return r.class_log_odds == c.class_log_odds && std::abs(r.fit.chi2 - c.fit.chi2) < as_good &&
+             r.log_odds > c.log_odds + far_rarer;
     });
   }
 
