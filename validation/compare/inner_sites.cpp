@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "msa/base/index.h"
+#include "validation/compare/yielding.h"
 
 namespace deflect::compare {
 namespace {
@@ -14,16 +15,22 @@ constexpr int curve_knots = 10;
 
 double sense(double f) { return f > 0 ? 1 : f < 0 ? -1 : 0; }
 
-/// The change of each measured number when site k is as much longer as `elongation` says at the reading's force.
+constexpr double no_force = 1e-9;  // of the largest
+
+/// The change of each measured number when the site is as much longer as `elongation` says at the reading's force.
 template <class Shape>
-VectorX rows_of(const ResidualStudy& s, std::size_t k, const MatrixX& forces, const Shape& elongation) {
+VectorX rows_of(const ResidualStudy& s, const subject::InnerSite& site, const VectorX& forces,
+                const Shape& elongation) {
   VectorX out(std::ssize(s.values));
   for (std::size_t i = 0; i < s.values.size(); ++i) {
     const measurement::MeasuredValue& v = s.values[i];
-    out(as_index(i)) =
-        s.inner.all[k].moves(as_index(v.channel) - 6) * elongation(forces(as_index(k), as_index(v.reading)));
+    out(as_index(i)) = site.moves(as_index(v.channel) - 6) * elongation(forces(as_index(v.reading)));
   }
   return out;
+}
+
+VectorX forces_at(const ResidualStudy& s, const subject::InnerSite& site) {
+  return s.loads.transpose() * site.per_load;
 }
 
 }  // namespace
@@ -32,6 +39,16 @@ MatrixX inner_forces(const ResidualStudy& s) {
   MatrixX per_load(std::ssize(s.inner.all), s.loads.rows());
   for (std::size_t k = 0; k < s.inner.all.size(); ++k) per_load.row(as_index(k)) = s.inner.all[k].per_load.transpose();
   return per_load * s.loads;
+}
+
+MatrixX changes_by_yielding(const ResidualStudy& s, const subject::InnerSite& site) {
+  const VectorX forces = forces_at(s, site);
+  const double most = forces.cwiseAbs().maxCoeff();
+  const auto shape = [&](const auto& e) { return rows_of(s, site, forces, e); };
+  MatrixX out(std::ssize(s.values), 3);
+  out << shape([](double f) { return f; }), shape([](double f) { return std::abs(f); }),
+      most * shape([&](double f) { return std::abs(f) > no_force * most ? sense(f) : 0; });
+  return out;
 }
 
 InnerFits fits_of_inner_sites(const ResidualStudy& s, const statistics::Uncertainty& u, const VectorX& residual) {
@@ -44,10 +61,7 @@ InnerFits fits_of_inner_sites(const ResidualStudy& s, const statistics::Uncertai
   for (std::size_t k = 0; k < s.inner.all.size(); ++k) {
     const subject::InnerSite& site = s.inner.all[k];
     const double most = forces.row(as_index(k)).cwiseAbs().maxCoeff();
-    const auto shape = [&](const auto& e) { return rows_of(s, k, forces, e); };
-    MatrixX shapes(residual.size(), 3);
-    shapes << shape([](double f) { return f; }), shape([](double f) { return std::abs(f); }),
-        most * shape([&](double f) { return std::abs(f) > 1e-9 * most ? sense(f) : 0; });
+    const MatrixX shapes = changes_by_yielding(s, site);
     const MatrixX whitened = fits.whitened(shapes);
     if (!(most > 0) || !(whitened.norm() > 0)) continue;
     const statistics::Regression all = fits.on_whitened(whitened), line = fits.on_whitened(whitened.leftCols(1));
@@ -65,10 +79,10 @@ InnerFits fits_of_inner_sites(const ResidualStudy& s, const statistics::Uncertai
   for (std::size_t i = 0; i < std::min(most_curves, order.size()); ++i) {
     const InnerSiteFit& fit = out.all[order[i]];
     const std::size_t k = number[order[i]];
-    const auto shape = [&](const auto& e) { return rows_of(s, k, forces, e); };
+    const VectorX passes = forces.row(as_index(k)).transpose();
+    const auto shape = [&](const auto& e) { return rows_of(s, s.inner.all[k], passes, e); };
     const std::string known = fit.determinate ? "by statics" : "as shared";
-    out.curves.push_back(
-        curve_of(fits, shape, forces.row(as_index(k)).transpose(), fit.site + ", " + known, fit.rotation, curve_knots));
+    out.curves.push_back(curve_of(fits, shape, passes, fit.site + ", " + known, fit.rotation, curve_knots));
   }
   std::vector<InnerSiteFit> sorted;
   for (const std::size_t i : order) sorted.push_back(std::move(out.all[i]));

@@ -5,6 +5,7 @@
 
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
+#include "validation/compare/yielding.h"
 #include "validation/effects/law_of_effect.h"
 #include "validation/parallel/cases.h"
 
@@ -145,7 +146,8 @@ MatrixX Changes::by_whatever(const subject::Place& place, std::optional<int> leg
   if (drawn && place.kind == subject::PlaceKind::load)
     if (const frame::LoadCase* load = find(drawn->loads, place.part)) return by_any_load(*load, place.part);
   if (!drawn && place.kind == subject::PlaceKind::load) return by_any_load_of_a_machine(place);
-  if (drawn && place.kind == subject::PlaceKind::member && place.others.empty()) return by_any_elongation(place);
+  const bool passes = place.kind == subject::PlaceKind::member || place.kind == subject::PlaceKind::support;
+  if (drawn && passes && place.others.empty()) return by_any_elongation(place);
   if (!drawn && place.kind == subject::PlaceKind::member && place.others.empty()) return by_any_section(place, leg);
   return MatrixX(null_.size(), 0);
 }
@@ -204,18 +206,10 @@ MatrixX Changes::by_any_load_of_a_machine(const subject::Place& place) const {
 
 MatrixX Changes::by_any_elongation(const subject::Place& place) const {
   const compare::ResidualStudy& study = observations_.comparison().study;
-  const auto site = std::find_if(study.inner.all.begin(), study.inner.all.end(),
-                                 [&](const subject::InnerSite& s) { return s.place.path == place.path; });
-  if (site == study.inner.all.end()) return MatrixX(null_.size(), 0);
-  const VectorX forces = study.loads.transpose() * site->per_load;
-  const double none = no_force * forces.cwiseAbs().maxCoeff();
-  MatrixX out(null_.size(), 3);
-  for (std::size_t i = 0; i < study.values.size(); ++i) {
-    const measurement::MeasuredValue& v = study.values[i];
-    const double f = forces(as_index(v.reading)), step = std::abs(f) <= none ? 0 : f > 0 ? 1 : -1;
-    out.row(as_index(i)) = -site->moves(as_index(v.channel) - 6) * Vector3(f, std::abs(f), step);
-  }
-  return out;
+  const auto site = std::find_if(study.inner.all.begin(), study.inner.all.end(), [&](const subject::InnerSite& s) {
+    return s.place.path == place.path && s.place.freedoms == place.freedoms;
+  });
+  return site == study.inner.all.end() ? MatrixX(null_.size(), 0) : compare::changes_by_yielding(study, *site);
 }
 
 MatrixX Changes::by_any_section(const subject::Place& member, std::optional<int> leg) const {

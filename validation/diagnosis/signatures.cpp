@@ -13,8 +13,8 @@
 #include "msa/base/error.h"
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
-#include "validation/compare/channel_shapes.h"
 #include "validation/diagnosis/changes.h"
+#include "validation/diagnosis/whatever_columns.h"
 #include "validation/effects/law_of_effect.h"
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"
@@ -83,16 +83,6 @@ std::map<std::string, double> count_by_name(const std::vector<Signature>& all) {
   return out;
 }
 
-/// Of the subject's own places, those that are one part: of every leg, and of each of several.
-template <class Does>
-void for_each_place(const subject::Subject& subject, const Does& does) {
-  for (const subject::Place& p : subject.places()) {
-    if (!p.others.empty()) continue;
-    does(p, std::nullopt);
-    for (int leg = 1; p.in_legs() && subject.legs() > 1 && leg <= subject.legs(); ++leg) does(p, std::optional(leg));
-  }
-}
-
 /// The signature of a change, and the coordinates in its basis.
 std::pair<Signature, MatrixX> weighed(const effects::PlacedEffect& e, const Change& change,
                                       const std::shared_ptr<const Observations>& o, const WhateverTheLaw& any) {
@@ -147,13 +137,7 @@ SignaturesAtPlaces::SignaturesAtPlaces(const Observations& o, const std::vector<
   nowhere_ = left_out_.size();
   for (const effects::PlacedEffect& e : placed) places_.push_back({e});
   const auto changes = std::make_shared<const Changes>(o, placed, threads);
-  std::map<Spot, MatrixX> columns;
-  for_each_place(o.subject(), [&](const subject::Place& p, std::optional<int> leg) {
-    if (MatrixX own = changes->by_whatever(p, leg); own.cols() > 0) columns.emplace(spot_of(p, leg), std::move(own));
-  });
-  for (auto& [sensor, shapes] : compare::channel_shapes(o.comparison().study))
-    if (shapes.cols() > 0) columns.emplace(Spot("sensors." + sensor, 0), std::move(shapes));
-  whatever_.emplace(changes, std::move(columns));
+  whatever_.emplace(changes, whatever_columns(o, *changes));
   weigh(o, threads, [&](std::size_t i) {
     Place& p = places_[i];
     auto change = outcome_of([&] { return changes->by(p.effect); });

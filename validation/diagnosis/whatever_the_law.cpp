@@ -7,7 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "validation/compare/channel_shapes.h"
+#include "validation/compare/yielding.h"
+#include "validation/diagnosis/whatever_columns.h"
 #include "validation/statistics/columns.h"
+#include "validation/subject/frame_sites.h"
 
 namespace deflect::diagnosis {
 namespace {
@@ -92,6 +96,27 @@ Columns WhateverTheLaw::friction_at(const subject::Place& place, std::optional<i
   return [changes = changes_, place, leg, o = std::move(o)] {
     return as_seen(*o, any_friction(*changes, place, leg, std::ssize(o->comparison().study.values)));
   };
+}
+
+std::map<Spot, MatrixX> whatever_columns(const Observations& o, const Changes& changes) {
+  const compare::ResidualStudy& study = o.comparison().study;
+  std::map<Spot, MatrixX> out;
+  for_each_place(o.subject(), [&](const subject::Place& p, std::optional<int> leg) {
+    if (MatrixX own = changes.by_whatever(p, leg); own.cols() > 0) out.emplace(spot_of(p, leg), std::move(own));
+  });
+  for (auto& [sensor, shapes] : compare::channel_shapes(study))
+    if (shapes.cols() > 0) out.emplace(Spot("sensors." + sensor, 0), std::move(shapes));
+  if (const frame::FrameDescription* drawn = o.subject().frame()) {
+    const std::vector<subject::InnerSite> joints = subject::joint_sites_of(*drawn, *study.data);
+    for_each_place(o.subject(), [&](const subject::Place& p, std::optional<int> leg) {
+      std::vector<MatrixX> here;
+      for (const subject::InnerSite& site : joints)
+        if (site.place.path == p.path && std::ranges::includes(p.freedoms, site.place.freedoms))
+          here.push_back(compare::changes_by_yielding(study, site));
+      if (!here.empty()) out.emplace(spot_of(p, leg), statistics::side_by_side(here, std::ssize(study.values)));
+    });
+  }
+  return out;
 }
 
 }  // namespace deflect::diagnosis

@@ -41,38 +41,77 @@ std::vector<Listed> listed(const FrameDescription& f) {
   return out;
 }
 
+std::vector<Listed> listed_joints(const FrameDescription& f) {
+  std::vector<Listed> out;
+  const frame::NameIndex members(f.members), springs(f.springs);
+  for (const Place& p : places_of(f)) {
+    const std::size_t dot = p.part.rfind('.');
+    if (p.kind == PlaceKind::member_end && p.hold != Hold::free) {
+      const auto at = p.part.substr(dot + 1) == "start" ? TakenLaws::At::start : TakenLaws::At::end;
+      for (const std::size_t freedom : p.freedoms) {
+        out.push_back({p, {at, as_size(members.find(p.part.substr(0, dot))), freedom}});
+        out.back().place.freedoms = {freedom};
+      }
+    } else if (p.path.starts_with("springs.") && p.hold == Hold::elastic) {
+      const auto spring = as_size(springs.find(p.path.substr(p.path.find('.') + 1)));
+      out.push_back({p, {TakenLaws::At::spring, spring, p.freedoms.front()}});
+    }
+  }
+  return out;
+}
+
+/// What is known of the frame at these places; nothing where it has laws that are not linear.
+std::optional<frame::Passages> passages_at(const std::vector<Listed>& places, const FrameDescription& f,
+                                           const measurement::Measurements& data, const FrameNearby& nearby) {
+  if (!has_linear_laws(f) || !nearby.known()) return std::nullopt;
+  std::vector<const frame::FrameSensor*> sensors;
+  for (const measurement::SensorChannel& s : data.instruments.sensors) sensors.push_back(find(f.sensors, s.name));
+  std::vector<TakenLaws> at;
+  for (const Listed& each : places) at.push_back(each.at);
+  std::optional<frame::Passages> known = nearby.known()->passages(sensors, at);
+  for (std::size_t s = 0; known && s < sensors.size(); ++s) known->moves.row(as_index(s)) *= sensors[s]->gain;
+  return known;
+}
+
+InnerSite site_of(const Listed& at, Eigen::Index k, const frame::Passages& known, double load_gain) {
+  InnerSite out{name_of(at.place), at.place, at.place.rotation(), {}, {}};
+  const Eigen::Index loads = known.carried.cols() - 1;  // the last one is always there
+  out.per_load = load_gain * (known.carried.row(k).head(loads).array() - known.carried(k, loads)).matrix().transpose();
+  out.moves = known.moves.col(k);
+  return out;
+}
+
 }  // namespace
 
 InnerSites inner_sites_of(const FrameDescription& f, const measurement::Measurements& data, const FrameNearby& nearby) {
-  if (!has_linear_laws(f) || !nearby.known()) return {};
-  std::vector<const frame::FrameSensor*> sensors;
-  for (const measurement::SensorChannel& s : data.instruments.sensors) sensors.push_back(find(f.sensors, s.name));
   const std::vector<Listed> places = listed(f);
-  std::vector<TakenLaws> at;
-  double stiffest = 0;
-  for (const Listed& each : places) at.push_back(each.at), stiffest = std::max(stiffest, each.stiffness);
-  std::optional<frame::Passages> known = nearby.known()->passages(sensors, at);
+  const std::optional<frame::Passages> known = passages_at(places, f, data, nearby);
   if (!known) return {};
+  double stiffest = 0;
+  for (const Listed& each : places) stiffest = std::max(stiffest, each.stiffness);
   std::vector<Eigen::Index> giving;
   for (std::size_t i = 0; i < places.size(); ++i)
     if (known->gives[i]) giving.push_back(as_index(i));
   InnerSites out;
   out.response = known->response(giving, giving);
   for (const Eigen::Index k : giving) {
-    const std::size_t i = as_size(k);
-    InnerSite site{name_of(places[i].place), places[i].place, places[i].place.rotation(), {}, {}};
-    const Eigen::Index loads = known->carried.cols() - 1;  // the last one is always there
-    site.per_load =
-        f.load_gain * (known->carried.row(k).head(loads).array() - known->carried(k, loads)).matrix().transpose();
-    site.moves = known->moves.col(k);
-    for (std::size_t s = 0; s < sensors.size(); ++s) site.moves(as_index(s)) *= sensors[s]->gain;
+    InnerSite site = site_of(nth(places, k), k, *known, f.load_gain);
     // N/m; of a rotation over the square of the frame's size.
-    const double holds = -known->response(k, k), natural = places[i].stiffness;
+    const double holds = -known->response(k, k), natural = nth(places, k).stiffness;
     const double scale = site.rotation ? stiffest * size_of(f) * size_of(f) : stiffest;
     site.determinate = !(holds > holds_nothing * (natural > 0 ? natural : scale));
     site.redundancy = site.determinate ? 0 : natural > 0 ? std::min(1.0, holds / natural) : 1;
     out.all.push_back(std::move(site));
   }
+  return out;
+}
+
+std::vector<InnerSite> joint_sites_of(const FrameDescription& f, const measurement::Measurements& data) {
+  const std::vector<Listed> places = listed_joints(f);
+  const std::optional<frame::Passages> known = passages_at(places, f, data, FrameNearby(f, data));
+  std::vector<InnerSite> out;
+  for (std::size_t i = 0; known && i < places.size(); ++i)
+    if (known->gives[i]) out.push_back(site_of(places[i], as_index(i), *known, f.load_gain));
   return out;
 }
 
