@@ -55,6 +55,7 @@ class SamePhases {
   std::vector<LawPhase> phases_, factorised_;
   VectorX root_;  // √c
   Eigen::PartialPivLU<MatrixX> lu_;
+  std::optional<bool> determined_;  // by the phases that are factorised, where it was asked
 };
 
 }  // namespace deflect::analytic
