@@ -6,6 +6,7 @@
 #include <set>
 
 #include "msa/base/error.h"
+#include "msa/base/outcome.h"
 #include "validation/statistics/columns.h"
 
 namespace deflect::benchmark {
@@ -226,7 +227,9 @@ double beyond_law_elsewhere(const Plan& plan, const Plan::Told& told, const effe
   others.resize(std::min(predicted, others.size()));
   double least = told.change.norm();
   for (const auto& [along, other] : others) {
-    const VectorX there = plan.told({other->effect, hidden.values}).change;
+    const auto told_there = outcome_of([&] { return plan.told({other->effect, hidden.values}).change; });
+    if (!told_there) continue;  // what may be of this size here may not be there
+    const VectorX& there = *told_there;
     if (there.size() != told.change.size() || there.isZero(0)) continue;
     least = std::min(least, (told.change - there * (there.dot(told.change) / there.squaredNorm())).norm());
   }

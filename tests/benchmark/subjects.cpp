@@ -378,6 +378,7 @@ std::vector<SubjectRow> diagnose_subjects(const std::vector<std::string>& asked,
       try {
         row.sets[i] = examined.diagnosed(first + k, seed + 1000 * k + 100000 * place);
       } catch (const std::runtime_error& e) {
+        row.sets[i].kind = turns[(first + k) % std::size(turns)].kind;
         row.sets[i].skipped = e.what();
       }
     };
