@@ -1,5 +1,4 @@
 // The statistics of a diagnosis, against their definitions.
-#include "validation/diagnosis/evidence.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +8,7 @@
 
 #include "validation/diagnosis/discrepancy.h"
 #include "validation/measurement/random.h"
+#include "validation/statistics/evidence.h"
 #include "validation/statistics/tail.h"
 #include "validation/statistics/uncertainty.h"
 
@@ -33,10 +33,10 @@ MatrixX noise(Eigen::Index rows, Eigen::Index columns, std::uint64_t seed) {
 
 // By hand, so that the two stand on nothing of their own below; sums that overflow without care are right too.
 TEST(Evidence, MeansAndStepsAreThoseOfTheirWords) {
-  EXPECT_NEAR(log_mean_exp({std::log(1.0), std::log(3.0)}), std::log(2.0), 1e-15);
-  EXPECT_NEAR(log_mean_exp({1000 + std::log(1.0), 1000 + std::log(3.0)}), 1000 + std::log(2.0), 1e-12);
-  EXPECT_NEAR(log_mean_exp({-1e6}), -1e6, 1e-9);
-  const std::vector<double> steps = log_spaced(1, 16, 2);  // the middles of two octaves each
+  EXPECT_NEAR(statistics::log_mean_exp({std::log(1.0), std::log(3.0)}), std::log(2.0), 1e-15);
+  EXPECT_NEAR(statistics::log_mean_exp({1000 + std::log(1.0), 1000 + std::log(3.0)}), 1000 + std::log(2.0), 1e-12);
+  EXPECT_NEAR(statistics::log_mean_exp({-1e6}), -1e6, 1e-9);
+  const std::vector<double> steps = statistics::log_spaced(1, 16, 2);  // the middles of two octaves each
   ASSERT_EQ(steps.size(), 2u);
   EXPECT_NEAR(steps[0], 2, 1e-14);
   EXPECT_NEAR(steps[1], 8, 1e-14);
@@ -46,9 +46,9 @@ TEST(Evidence, MeansAndStepsAreThoseOfTheirWords) {
 TEST(Evidence, OfOneParameterIsTheRatioOfMarginalDensities) {
   for (const double z : {0.0, 1.0, 3.0, 5.0, 20.0}) {
     std::vector<double> terms;
-    for (const double tau : log_spaced(0.5, 500, 40))
+    for (const double tau : statistics::log_spaced(0.5, 500, 40))
       terms.push_back(log_normal_density(z, 1 + tau * tau) - log_normal_density(z, 1));
-    EXPECT_NEAR(log_evidence(z * z, 1, false), log_mean_exp(terms), 1e-12 * (1 + z * z));
+    EXPECT_NEAR(statistics::log_evidence(z * z, 1, false), statistics::log_mean_exp(terms), 1e-12 * (1 + z * z));
   }
 }
 
@@ -56,7 +56,7 @@ TEST(Evidence, OfOneParameterIsTheRatioOfMarginalDensities) {
 TEST(Evidence, OfAFixedSignIsTheIntegralOverHalfThePrior) {
   for (const double z : {0.5, 2.0, 6.0}) {
     std::vector<double> terms;
-    for (const double tau : log_spaced(0.5, 500, 40)) {
+    for (const double tau : statistics::log_spaced(0.5, 500, 40)) {
       const double width = 12 / std::sqrt(1 + 1 / (tau * tau)), middle = z * tau * tau / (1 + tau * tau);
       const double low = std::max(0.0, middle - width), h = (middle + width - low) / 20000;
       double sum = 0;
@@ -66,19 +66,19 @@ TEST(Evidence, OfAFixedSignIsTheIntegralOverHalfThePrior) {
       }
       terms.push_back(std::log(sum) - log_normal_density(z, 1));
     }
-    EXPECT_NEAR(log_evidence(z * z, 1, true), log_mean_exp(terms), 1e-4);
+    EXPECT_NEAR(statistics::log_evidence(z * z, 1, true), statistics::log_mean_exp(terms), 1e-4);
   }
 }
 
 TEST(Evidence, GrowsWithTheGainAndFallsWithTheParameters) {
   for (const double gain : {0.0, 5.0, 20.0, 100.0}) {
-    EXPECT_LT(log_evidence(gain, 1, false), log_evidence(gain + 1, 1, false));
-    EXPECT_GT(log_evidence(gain, 1, false), log_evidence(gain, 2, false));
-    EXPECT_GT(log_evidence(gain, 2, false), log_evidence(gain, 3, false));
+    EXPECT_LT(statistics::log_evidence(gain, 1, false), statistics::log_evidence(gain + 1, 1, false));
+    EXPECT_GT(statistics::log_evidence(gain, 1, false), statistics::log_evidence(gain, 2, false));
+    EXPECT_GT(statistics::log_evidence(gain, 2, false), statistics::log_evidence(gain, 3, false));
   }
-  EXPECT_LT(log_evidence(0, 1, false), 0);  // nothing gained: it is not there, rather
+  EXPECT_LT(statistics::log_evidence(0, 1, false), 0);  // nothing gained: it is not there, rather
   // A fit may leave more than nothing did: then the effect's own sense is no more likely than the other.
-  EXPECT_LT(log_evidence(-5, 1, true), log_evidence(0, 1, true));
+  EXPECT_LT(statistics::log_evidence(-5, 1, true), statistics::log_evidence(0, 1, true));
 }
 
 /// Of numbers that are white as they are.
@@ -96,11 +96,11 @@ TEST(Discrepancy, HasTheEvidenceOfItsCovariance) {
   const Discrepancy d = of_white(B);
   for (auto column : B.colwise()) column *= std::sqrt(12.0) / column.norm();
   std::vector<double> terms;
-  for (const double tau : log_spaced(1e-3, 10, 40)) {
+  for (const double tau : statistics::log_spaced(1e-3, 10, 40)) {
     const MatrixX S = MatrixX::Identity(12, 12) + tau * tau * B * B.transpose();
     terms.push_back(0.5 * (r.squaredNorm() - r.dot(S.llt().solve(r)) - std::log(S.determinant())));
   }
-  EXPECT_NEAR(d.log_evidence(r), log_mean_exp(terms), 1e-9);
+  EXPECT_NEAR(d.log_evidence(r), statistics::log_mean_exp(terms), 1e-9);
   const double tau = d.likeliest(r).tau;
   const MatrixX S = MatrixX::Identity(12, 12) + tau * tau * B * B.transpose();
   EXPECT_NEAR(d.chi2(r, d.likeliest(r)), r.dot(S.llt().solve(r)), 1e-9 * r.squaredNorm());

@@ -13,12 +13,12 @@
 #include "tests/support/effects.h"
 #include "tests/support/springs_apart.h"
 #include "validation/diagnosis/diagnosis.h"
-#include "validation/diagnosis/evidence.h"
 #include "validation/effects/place_effects.h"
 #include "validation/effects/with_effect.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
 #include "validation/statistics/columns.h"
+#include "validation/statistics/evidence.h"
 
 namespace deflect {
 namespace {
@@ -300,7 +300,7 @@ TEST(AtOnePlace, StandsForEffectsThatAddUpToIt) {
     for (const std::size_t i : which) h.push_back({&known[i], {}});
     return Selection{s.observations, h, fit_of_all(s.observations, h, values), {}, {}};
   };
-  double more = log_evidence(1600, 2, false);
+  double more = statistics::log_evidence(1600, 2, false);
   for (std::size_t i = 2; i < 6; ++i) more -= candidates.class_log_odds_of(all.laws[i].effect, 400);
   ASSERT_GT(more, 2);
   const Selection four = found({2, 3, 4, 5}, VectorX::Constant(4, 20));

@@ -1,13 +1,12 @@
 // Where the unexplained rest acts, on signatures made by hand: each axis of the space of readings is one unit of noise.
 #include "validation/diagnosis/at_places.h"
+#include "validation/statistics/evidence.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <deque>
 #include <memory>
-
-#include "validation/diagnosis/evidence.h"
 
 namespace deflect {
 namespace {
@@ -84,7 +83,7 @@ TEST(Localised, APlaceIsJudgedByAllItsLawsTogether) {
   EXPECT_EQ(found[0].what, "play");
   EXPECT_NEAR(found[0].share, 1, 1e-12);
   // 400 with two dimensions against 324 with one.
-  const double odds = log_evidence(400, 2, false) - log_evidence(324, 1, false);
+  const double odds = statistics::log_evidence(400, 2, false) - statistics::log_evidence(324, 1, false);
   EXPECT_NEAR(found[0].probability, 1 / (1 + std::exp(-odds)), 1e-12);
 }
 
@@ -143,7 +142,7 @@ TEST(Localised, WhatNoPlaceExplainsMakesThemHarderToTellApart) {
   const std::vector<Localised> found = p.of(both + 60 * axis(9));
   ASSERT_EQ(found.size(), 2u);
   const double scale = (225 + 3600) / 39.0,
-               odds = log_evidence(400 / scale, 1, false) - log_evidence(225 / scale, 1, false);
+               odds = statistics::log_evidence(400 / scale, 1, false) - statistics::log_evidence(225 / scale, 1, false);
   EXPECT_NEAR(found[0].probability, 1 / (1 + std::exp(-odds)), 1e-12);
 }
 
@@ -161,7 +160,7 @@ TEST(AtPlaces, EvidenceAndChanceAreThoseOfAllPlaces) {
   Places p;
   p.law("elbow", "spring", axis(0)).law("elbow", "play", axis(1)).law("wrist", "spring", axis(2));
   const VectorX residual = 5 * axis(0) + 2 * axis(1) + 3 * axis(2);
-  const double elbow = log_evidence(29, 2, false), wrist = log_evidence(9, 1, false);
+  const double elbow = statistics::log_evidence(29, 2, false), wrist = statistics::log_evidence(9, 1, false);
   EXPECT_NEAR(log_evidence(p.at(residual)), std::log((std::exp(elbow) + std::exp(wrist)) / 2), 1e-12);
   // χ² with two degrees of freedom: exp(−g/2).
   EXPECT_NEAR(p_value(p.at(residual)), 2 * std::exp(-29.0 / 2), 1e-15);

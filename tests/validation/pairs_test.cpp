@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "tests/support/effects.h"
-#include "validation/diagnosis/evidence.h"
 #include "validation/measurement/random.h"
 #include "validation/statistics/columns.h"
+#include "validation/statistics/evidence.h"
 
 namespace deflect {
 namespace {
@@ -35,7 +35,7 @@ std::vector<PairOfSignatures> pairs(const std::vector<Signature>& all, const Vec
                                     const MatrixX& beside = MatrixX(numbers, 0), double least = -1e6,
                                     std::size_t most = 3) {
   const auto odds = [&](std::size_t i, double gain) {
-    return log_evidence(gain, all[i].amplitudes(), all[i].one_sided);
+    return statistics::log_evidence(gain, all[i].amplitudes(), all[i].one_sided);
   };
   return best_pairs(all, inner_products(all), residual, beside, odds, least, most);
 }
@@ -106,7 +106,7 @@ TEST(Pairs, NeitherWhatIsThereNorTwoThatAreOneNorThoseTooUnlikely) {
   const std::vector<Signature> all = {signature(axis(0)), signature(axis(1))};
   EXPECT_TRUE(pairs(all, 10 * axis(0), axis(1)).empty());
   EXPECT_TRUE(pairs({all[0], all[0]}, residual).empty());
-  const double odds = 2 * log_evidence(100, 1, false);
+  const double odds = 2 * statistics::log_evidence(100, 1, false);
   EXPECT_EQ(pairs(all, residual, MatrixX(numbers, 0), odds - 1e-6).size(), 1u);
   EXPECT_TRUE(pairs(all, residual, MatrixX(numbers, 0), odds + 1e-6).empty());
 }

@@ -10,9 +10,9 @@
 #include "tests/support/devices.h"
 #include "tests/support/effects.h"
 #include "tests/support/springs_apart.h"
-#include "validation/diagnosis/evidence.h"
 #include "validation/prediction/campaign.h"
 #include "validation/prediction/simulate.h"
+#include "validation/statistics/evidence.h"
 
 namespace deflect {
 namespace {
@@ -42,7 +42,8 @@ TEST(Candidates, OddsArePriorTimesEvidence) {
   for (const double gain : {0.0, 7.0, 40.0})
     for (const Signature& s : all)
       EXPECT_NEAR(candidates.class_log_odds_of(s.effect, gain),
-                  std::log(prior / (1 - 0.8)) + log_evidence(gain, 1, false) - (s.shaped ? std::log(3) : 0), 1e-12)
+                  std::log(prior / (1 - 0.8)) + statistics::log_evidence(gain, 1, false) - (s.shaped ? std::log(3) : 0),
+                  1e-12)
           << s.effect.effect->name << " " << gain;
 }
 
@@ -50,7 +51,7 @@ TEST(Candidates, OddsArePriorTimesEvidence) {
 TEST(Candidates, WhatTheDataCannotTellApartSharesAPrior) {
   const std::vector<Signature> all = {along("guide_root_compliance", 0), along("modulus", 0), along("sensor_drift", 3)};
   const Candidates candidates(all, 1);
-  const double gain = 12, evidence = log_evidence(gain, 1, false);
+  const double gain = 12, evidence = statistics::log_evidence(gain, 1, false);
   for (const Signature& s : all)
     EXPECT_NEAR(candidates.class_log_odds_of(s.effect, gain), std::log(0.8 * 0.9 / 2 / 0.2) + evidence, 1e-12);
 }

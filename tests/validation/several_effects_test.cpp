@@ -11,9 +11,9 @@
 #include "tests/support/effects_everywhere.h"
 #include "tests/support/paths.h"
 #include "validation/diagnosis/diagnosis.h"
-#include "validation/diagnosis/evidence.h"
 #include "validation/diagnosis/larger_tolerances.h"
 #include "validation/effects/with_effect.h"
+#include "validation/statistics/evidence.h"
 #include "validation/subject/simulate_frame.h"
 
 namespace deflect {
@@ -103,7 +103,7 @@ TEST(SeveralEffects, ShareTheirWeightAmongTheCandidatesAsTheseShareTheirOwn) {
   EXPECT_EQ(diagnosis::log_weights(all, larger), (std::vector<double>{3, 1, 5, 0})) << "each alone";
   EXPECT_EQ(diagnosis::log_weights(all, larger, 2), (std::vector<double>{3, 1, 5, 0})) << "no likelier than one";
   const std::vector<double> together = diagnosis::log_weights(all, larger, 7);
-  EXPECT_NEAR(diagnosis::log_sum_exp({together[0], together[1]}), 7, 1e-12);
+  EXPECT_NEAR(statistics::log_sum_exp({together[0], together[1]}), 7, 1e-12);
   EXPECT_NEAR(together[0] - together[1], 2, 1e-12);
   EXPECT_EQ(together[2], 5);
   EXPECT_EQ(together[3], 0);

@@ -17,20 +17,10 @@ double sense(double f) { return f > 0 ? 1 : f < 0 ? -1 : 0; }
 
 constexpr double no_force = 1e-9;  // of the largest
 
-/// The change of each measured number when the site is as much longer as `elongation` says at the reading's force.
-template <class Shape>
-VectorX rows_of(const ResidualStudy& s, const subject::InnerSite& site, const VectorX& forces,
-                const Shape& elongation) {
-  VectorX out(std::ssize(s.values));
-  for (std::size_t i = 0; i < s.values.size(); ++i) {
-    const measurement::MeasuredValue& v = s.values[i];
-    out(as_index(i)) = site.moves(as_index(v.channel) - 6) * elongation(forces(as_index(v.reading)));
-  }
-  return out;
-}
-
+/// 0 where it is rounding.
 VectorX forces_at(const ResidualStudy& s, const subject::InnerSite& site) {
-  return s.loads.transpose() * site.per_load;
+  const VectorX f = s.loads.transpose() * site.per_load;
+  return (f.array().abs() > no_force * f.cwiseAbs().maxCoeff()).select(f, 0);
 }
 
 }  // namespace
@@ -41,13 +31,22 @@ MatrixX inner_forces(const ResidualStudy& s) {
   return per_load * s.loads;
 }
 
+VectorX change_by_yielding(const ResidualStudy& s, const subject::InnerSite& site,
+                           const std::function<double(double)>& elongation) {
+  const VectorX longer = forces_at(s, site).unaryExpr(elongation);
+  VectorX out(std::ssize(s.values));
+  for (std::size_t i = 0; i < s.values.size(); ++i) {
+    const measurement::MeasuredValue& v = s.values[i];
+    out(as_index(i)) = site.moves(as_index(v.channel) - 6) * longer(as_index(v.reading));
+  }
+  return out;
+}
+
 MatrixX changes_by_yielding(const ResidualStudy& s, const subject::InnerSite& site) {
-  const VectorX forces = forces_at(s, site);
-  const double most = forces.cwiseAbs().maxCoeff();
-  const auto shape = [&](const auto& e) { return rows_of(s, site, forces, e); };
+  const double most = forces_at(s, site).cwiseAbs().maxCoeff();
+  const auto shape = [&](const auto& e) { return change_by_yielding(s, site, e); };
   MatrixX out(std::ssize(s.values), 3);
-  out << shape([](double f) { return f; }), shape([](double f) { return std::abs(f); }),
-      most * shape([&](double f) { return std::abs(f) > no_force * most ? sense(f) : 0; });
+  out << shape([](double f) { return f; }), shape([](double f) { return std::abs(f); }), most * shape(sense);
   return out;
 }
 
@@ -80,7 +79,7 @@ InnerFits fits_of_inner_sites(const ResidualStudy& s, const statistics::Uncertai
     const InnerSiteFit& fit = out.all[order[i]];
     const std::size_t k = number[order[i]];
     const VectorX passes = forces.row(as_index(k)).transpose();
-    const auto shape = [&](const auto& e) { return rows_of(s, s.inner.all[k], passes, e); };
+    const auto shape = [&](const auto& e) { return change_by_yielding(s, s.inner.all[k], e); };
     const std::string known = fit.determinate ? "by statics" : "as shared";
     out.curves.push_back(curve_of(fits, shape, passes, fit.site + ", " + known, fit.rotation, curve_knots));
   }

@@ -12,10 +12,10 @@
 #include <utility>
 
 #include "msa/base/index.h"
-#include "validation/diagnosis/evidence.h"
 #include "validation/effects/place_effects.h"
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"
+#include "validation/statistics/evidence.h"
 #include "validation/statistics/tail.h"
 
 namespace deflect::diagnosis {
@@ -188,7 +188,7 @@ std::vector<std::size_t> worth_finer_lines(const std::vector<std::size_t>& curve
   double most = 0;
   for (const std::size_t i : curved) most = std::max(most, gain(i));
   std::vector<std::size_t> out;
-  if (fit.chi2 - most < most_by_noise(static_cast<double>(fit.residual.size()))) return out;
+  if (fit.chi2 - most < statistics::most_by_noise(static_cast<double>(fit.residual.size()))) return out;
   std::copy_if(curved.begin(), curved.end(), std::back_inserter(out),
                [&](std::size_t i) { return gain(i) > nearly_most * most; });
   return out;
@@ -265,14 +265,14 @@ const AtPlace::Span& AtPlace::most() const {
 
 double AtPlace::log_odds(double noise) const {
   std::vector<double> logs;
-  for (const Span& s : spans) logs.push_back(diagnosis::log_evidence(s.gain / noise, s.dimension, false) - s.log_ways);
-  return std::log(prior) + log_sum_exp(logs);
+  for (const Span& s : spans) logs.push_back(statistics::log_evidence(s.gain / noise, s.dimension, false) - s.log_ways);
+  return std::log(prior) + statistics::log_sum_exp(logs);
 }
 
 double log_evidence(const std::vector<AtPlace>& all) {
   std::vector<double> logs;
   for (const AtPlace& p : all) logs.push_back(p.log_odds());
-  return logs.empty() ? -INFINITY : log_mean_exp(logs) + std::log(static_cast<double>(logs.size()));
+  return logs.empty() ? -INFINITY : statistics::log_mean_exp(logs) + std::log(static_cast<double>(logs.size()));
 }
 
 double p_value(const std::vector<AtPlace>& all) {
@@ -295,7 +295,7 @@ std::vector<Localised> localised(const std::vector<AtPlace>& places, double chi2
     order.push_back(order.size());
     weights.push_back(p.log_odds(scale));
   }
-  const std::vector<double> probability = normalised(weights);
+  const std::vector<double> probability = statistics::normalised(weights);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return probability[a] > probability[b]; });
 

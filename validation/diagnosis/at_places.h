@@ -1,8 +1,8 @@
 // What the laws at each place could take off a residual together.
 //
 // What is missing at a place may be a law that nobody wrote. The signatures of all laws at the place span what such a
-// law can do to the readings, as a curve drawn by hand is a sum of a few shapes; in a machine any friction is tried as
-// well, and any curve of deflection over force at the places whose laws explain most (whatever_the_law.h). With g the
+// law can do to the readings, as a curve drawn by hand is a sum of a few shapes; any friction is tried as well, and any
+// curve of deflection over force at the places whose laws explain most (whatever_the_law.h). With g the
 // reduction of χ² by such a span, beside the fit, and k its dimension, its evidence is log_evidence(g, k) (evidence.h),
 // divided by the number of spans from which it was chosen by its gain, and that of the place the mean over its spans.
 //

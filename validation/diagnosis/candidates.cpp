@@ -9,12 +9,12 @@
 #include <map>
 
 #include "msa/base/index.h"
-#include "validation/diagnosis/evidence.h"
 #include "validation/diagnosis/fit_in_turn.h"
 #include "validation/diagnosis/fit_problem.h"
 #include "validation/effects/law_of_effect.h"
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"
+#include "validation/statistics/evidence.h"
 
 namespace deflect::diagnosis {
 namespace {
@@ -65,7 +65,7 @@ double Candidates::log_odds(std::size_t i, double gain, double prior) const {
   const Signature& s = signatures_[i];
   // Of the shapes tried one in three, or so, does what the best does.
   const double shape = s.shaped ? std::log(3.0) : 0;
-  return std::log(prior / (1 - prior_missing)) + log_evidence(gain, s.amplitudes(), s.one_sided) - shape;
+  return std::log(prior / (1 - prior_missing)) + statistics::log_evidence(gain, s.amplitudes(), s.one_sided) - shape;
 }
 
 double Candidates::class_log_odds_of(const effects::PlacedEffect& e, double gain) const {
@@ -276,21 +276,21 @@ class Candidates::Round {
       if (c.fit.found) least = std::min(least, c.fit.chi2);
     return least > 2 * static_cast<double>(observations_.numbers());
   }
-  /// To these data: how much it explains more than its signature says holds for it too.
-  bool is_same_as_known(std::size_t i) const { return known_ && all_.classes_[i] == class_of_known_; }
-  /// Or another law side by side with it: the signature of a little restraint says little of a large one, which is what
-  /// a friction is that hardly slips.
+  /// To these data, so that it may explain as much more than its signature says; or the same law at a whole group.
+  bool is_same_or_wider(std::size_t i) const {
+    return known_ && (all_.classes_[i] == class_of_known_ || is_wider(signature(i).effect, *known_));
+  }
+  /// Or another law side by side with it: the signature of a little restraint, or play, says little of a large one.
   bool is_near_known(std::size_t i) const {
     const auto is_beside = [&](const effects::PlacedEffect& e) { return !effects::law_in_series(*e.effect); };
-    const effects::PlacedEffect& e = signature(i).effect;
-    return is_same_as_known(i) || (known_ && at_one_place(*known_, e) && is_beside(*known_) && is_beside(e));
+    const auto& e = signature(i).effect;
+    return is_same_or_wider(i) || (known_ && at_one_place(*known_, e) && is_beside(*known_) && is_beside(e));
   }
   /// It may have the same values.
   bool is_like_known(std::size_t i) const {
-    if (!is_same_as_known(i)) return false;
-    const auto &own = signature(i).effect.effect->parameters, &other = known_->effect->parameters;
-    return std::equal(own.begin(), own.end(), other.begin(), other.end(),
-                      [](const auto& a, const auto& b) { return a.name == b.name; });
+    if (!is_same_or_wider(i)) return false;
+    return std::ranges::equal(signature(i).effect.effect->parameters, known_->effect->parameters, {},
+                              &effects::EffectParameter::name, &effects::EffectParameter::name);
   }
   double odds(std::size_t i) const { return out_[i].fit.found ? out_[i].log_odds : out_of_question; }
   double likeliest() const {

@@ -39,9 +39,9 @@ class Candidates {
   /// Every effect added to others that are fitted already, in the order of the signatures. Fits are made only where an
   /// effect can come near the best and its log_odds can reach `least`. An effect almost indistinguishable from one of
   /// the others is not added. `known`: an effect that was fitted together with the others before; its new fit also
-  /// starts from those values, so that it is no worse; what these data cannot distinguish from it is fitted too. Where
-  /// a part that lets go is among the likeliest, play so wide that nothing touches, and what else says the same, is
-  /// fitted beside it.
+  /// starts from those values, so that it is no worse; what these data cannot distinguish from it is fitted too, and
+  /// the same law at a group that has its place. Where a part that lets go is among the likeliest, play so wide that
+  /// nothing touches, and what else says the same, is fitted beside it.
   std::vector<Candidate> beside(const Observations&, const Hypothesis&, const Fit&, double least,
                                 const std::optional<effects::EffectInstance>& known = {}) const;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
@@ -13,16 +14,12 @@ namespace deflect::diagnosis {
 namespace {
 
 constexpr double agreed = 1e-2;
-constexpr double unseen = 1e-6;      // standard deviations of noise
-constexpr double sampled = 0.125;    // share of the readings that leave play open which is asked whether it shows
-constexpr double most_sampled = 64;  // readings at most that are asked
-constexpr double rounding = 1e-11;   // of a prediction: less is no change
-constexpr double part_of_a_load = 0.1;
-constexpr double hundredth = 1e-2;  // of a machine's load, of its size, or rad
-constexpr const char* load_at_tool = "rig.load_cell";
-constexpr std::size_t most_apart = 4;     // nodes of a load
-constexpr double no_force = 1e-9;         // of the largest
+constexpr double unseen = 1e-6;           // standard deviations of noise
+constexpr double sampled = 0.125;         // share of the readings that leave play open which is asked whether it shows
+constexpr double most_sampled = 64;       // readings at most that are asked
+constexpr double rounding = 1e-11;        // of a prediction: less is no change
 constexpr double size_of_a_curve = 1e-3;  // m
+constexpr double no_force = 1e-9;         // of the largest
 constexpr std::size_t parts_of_a_line = 7, parts_of_a_finer_line = 61;
 constexpr std::size_t forces_of_a_part = 10;  // of a finer line, at least
 
@@ -77,18 +74,40 @@ std::vector<VectorX> shapes(const std::vector<effects::EffectParameter>& all, co
   return out;
 }
 
-/// By how much a load F differs, in the base's axes, whose point lies elsewhere along an axis of the platform (columns
-/// 0 to 2, by 1 m), which is turned about an axis of the base (3 to 5, by 1 rad), or of which one component is once
-/// larger (6 to 11). R: axes of the platform.
-Eigen::Matrix<double, 6, 12> other_loads(const Vector6& F, const Matrix3& R) {
-  const Vector3 f = F.head<3>(), m = F.tail<3>();
-  Eigen::Matrix<double, 6, 12> out = Eigen::Matrix<double, 6, 12>::Zero();
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const Vector3 turn = Vector3::Unit(axis);
-    out.col(axis).tail<3>() = R.col(axis).cross(f);
-    out.col(3 + axis) << turn.cross(f), turn.cross(m);
+/// The places inside a frame through which force passes.
+std::vector<subject::InnerSite> loaded_sites(const compare::ResidualStudy& s) {
+  std::vector<subject::InnerSite> out = s.inner.all;
+  std::ranges::move(s.standing->joint_sites(*s.data), std::back_inserter(out));
+  const auto force = [&](const subject::InnerSite& site) {
+    return (s.loads.transpose() * site.per_load).cwiseAbs().maxCoeff() / (site.rotation ? s.standing->size() : 1);
+  };
+  double most = 0;
+  for (const subject::InnerSite& site : out) most = std::max(most, force(site));
+  std::erase_if(out, [&](const subject::InnerSite& site) { return !(force(site) > no_force * most); });
+  return out;
+}
+
+/// `forces`: sizes of those that pass, in any order.
+std::vector<Changes::Curve> curves_of(Curves kind, std::vector<double> forces) {
+  std::vector<Changes::Curve> out;
+  if (kind == Curves::powers) {
+    for (const double p : {0.0, 0.5, 1.0, 2.0}) {
+      const auto power = [p](double f) { return f == 0 ? 0 : std::pow(std::abs(f), p); };
+      out.emplace_back(power);
+      out.emplace_back([power](double f) { return std::copysign(power(f), f); });
+    }
+    return out;
   }
-  out.rightCols<6>() = F.asDiagonal();
+  std::sort(forces.begin(), forces.end());
+  std::size_t parts = parts_of_a_line;
+  if (kind == Curves::finer_lines) parts = std::min(parts_of_a_finer_line, forces.size() / forces_of_a_part);
+  if (parts < parts_of_a_line || (kind == Curves::finer_lines && parts == parts_of_a_line)) return out;
+  out.emplace_back([](double f) { return f == 0 ? 0 : std::copysign(1.0, f); });
+  out.emplace_back([](double f) { return f; });
+  for (std::size_t i = 1; i < parts && !forces.empty(); ++i)
+    for (const double sense : {-1.0, 1.0})
+      out.emplace_back(
+          [sense, knee = forces[i * forces.size() / parts]](double f) { return std::max(0.0, sense * f - knee); });
   return out;
 }
 
@@ -97,7 +116,8 @@ Eigen::Matrix<double, 6, 12> other_loads(const Vector6& F, const Matrix3& R) {
 Changes::Changes(const Observations& o, const std::vector<effects::PlacedEffect>& effects, int threads)
     : observations_(o),
       null_(o.residual(o.subject())),
-      transmissions_(o.subject().stand(*o.comparison().study.data)->transmissions()) {
+      transmissions_(o.subject().stand(*o.comparison().study.data)->transmissions()),
+      sites_(loaded_sites(o.comparison().study)) {
   const measurement::Measurements& data = *o.comparison().study.data;
   if (data.readings.front().sequence) node_motions_ = o.subject().stand(data)->node_motions(data);
   if (!transmissions_) return;
@@ -141,139 +161,57 @@ bool Changes::agrees(const effects::PlacedEffect& e) const {
   return off && *off <= 0;
 }
 
-MatrixX Changes::by_whatever(const subject::Place& place, std::optional<int> leg) const {
-  const frame::FrameDescription* drawn = observations_.subject().frame();
-  if (drawn && place.kind == subject::PlaceKind::load)
-    if (const frame::LoadCase* load = find(drawn->loads, place.part)) return by_any_load(*load, place.part);
-  if (!drawn && place.kind == subject::PlaceKind::load) return by_any_load_of_a_machine(place);
-  const bool passes = place.kind == subject::PlaceKind::member || place.kind == subject::PlaceKind::support;
-  if (drawn && passes && place.others.empty()) return by_any_elongation(place);
-  if (!drawn && place.kind == subject::PlaceKind::member && place.others.empty()) return by_any_section(place, leg);
-  return MatrixX(null_.size(), 0);
-}
-
-MatrixX Changes::by_any_load(const frame::LoadCase& load, const std::string& of) const {
-  double most = 0;
-  for (const auto& [node, wrench] : load.nodes) most = std::max(most, wrench.norm());
-  const double size = observations_.comparison().study.standing->size();
-  const bool apart = load.nodes.size() <= most_apart;
-  std::vector<MatrixX> out;
-  const auto add = [&](Eigen::Index axis, const std::string& only) {
-    frame::FrameDescription other = *observations_.subject().frame();
-    for (auto& [name, each] : other.loads)
-      for (auto& [node, wrench] : each.nodes)
-        if (name == of && (only.empty() || node == only)) wrench(axis) += part_of_a_load * most * (axis < 3 ? 1 : size);
-    if (const auto residual = outcome_of([&] { return observations_.residual(subject::Subject(other)); }))
-      out.emplace_back(*residual - null_);
-  };
-  for (Eigen::Index axis = 0; most > 0 && axis < 6; ++axis) {
-    if (!apart) add(axis, "");
-    for (std::size_t i = 0; apart && i < load.nodes.size(); ++i) add(axis, load.nodes[i].first);
-  }
-  return statistics::side_by_side(out, null_.size());
-}
-
-MatrixX Changes::by_any_load_of_a_machine(const subject::Place& place) const {
-  const compare::ResidualStudy& study = observations_.comparison().study;
-  const std::vector<std::string>& points = study.data->instruments.load_points;
-  const bool at_tool = place.path == load_at_tool;
-  const auto point =
-      std::find_if(points.begin(), points.end(), [&](const auto& p) { return place.path == "loads." + p; });
-  if (!at_tool && point == points.end()) return MatrixX(null_.size(), 0);  // which the file has no column for
-  const auto standing = observations_.subject().stand(*study.data, study.standing.get());
-  const auto read = [&](const measurement::Measurements& data) {
-    prediction::PredictionOptions linear;
-    linear.geometry = Geometry::linear;
-    return statistics::rows_of(study.values, standing->predict(data, linear));
-  };
-  const VectorX before = read(*study.data);
-  std::vector<MatrixX> out;
-  for (Eigen::Index kind = 0; kind < 12; ++kind) {
-    measurement::Measurements other = *study.data;
-    bool same = true;
-    for (measurement::Reading& r : other.readings) {
-      Vector6& load = !at_tool ? r.at_points[as_size(point - points.begin())] : points.empty() ? r.load : r.at_tool;
-      const Vector6 more = other_loads(load, standing->tool(r.pose).R_W).col(kind);
-      load += hundredth * (kind < 3 ? standing->size() : 1) * more;
-      same = same && more.isZero(0);
-    }
-    if (same) continue;
-    if (const auto after = outcome_of([&] { return read(observations_.subject().placed(std::move(other))); }))
-      out.emplace_back(before - *after);
-  }
-  return statistics::side_by_side(out, null_.size());
-}
-
-MatrixX Changes::by_any_elongation(const subject::Place& place) const {
-  const compare::ResidualStudy& study = observations_.comparison().study;
-  const auto site = std::find_if(study.inner.all.begin(), study.inner.all.end(), [&](const subject::InnerSite& s) {
-    return s.place.path == place.path && s.place.freedoms == place.freedoms;
-  });
-  return site == study.inner.all.end() ? MatrixX(null_.size(), 0) : compare::changes_by_yielding(study, *site);
-}
-
-MatrixX Changes::by_any_section(const subject::Place& member, std::optional<int> leg) const {
-  const compare::ResidualStudy& study = observations_.comparison().study;
-  // What a member as long as the machine would do by a unit law, which carries all loads.
-  const double size = study.standing->size(), loads = study.loads.cwiseAbs().maxCoeff();
-  std::vector<MatrixX> out;
-  for (const std::size_t freedom : {0u, 3u, 4u, 5u}) {  // x is along the member
-    subject::Place sections = member;
-    sections.freedoms = {freedom};
-    const auto same = [](double force) { return force; };
-    const auto told = transmissions_ ? transmissions_->change(sections, leg, same, *study.data) : std::nullopt;
-    if (!told) continue;
-    const VectorX change = -statistics::rows_of(study.values, *told);
-    const double carrying_all = loads * std::pow(size, freedom < 3 ? 1 : 3);
-    if (change.cwiseAbs().maxCoeff() > no_force * carrying_all)
-      out.emplace_back(size_of_a_curve / change.norm() * change);
-  }
-  return statistics::side_by_side(out, null_.size());
-}
-
 bool Changes::is_known_by_statics(const subject::Place& place) const {
   const auto known = known_.find(subject::id_of(place));
   return transmissions_ && known != known_.end() && known->second;
 }
 
-std::vector<subject::Transmissions::Curve> Changes::curves_of(const effects::PlacedEffect& e, Curves kind) const {
-  std::vector<subject::Transmissions::Curve> out;
-  if (kind == Curves::powers) {
-    for (const double p : {0.0, 0.5, 1.0, 2.0}) {
-      const auto power = [p](double f) { return f == 0 ? 0 : std::pow(std::abs(f), p); };
-      out.emplace_back(power);
-      out.emplace_back([power](double f) { return std::copysign(power(f), f); });
-    }
+std::vector<const subject::InnerSite*> Changes::sites_at(const subject::Place& place) const {
+  std::vector<const subject::InnerSite*> out;
+  const auto is_there = [](const subject::Place& site, const std::string& path,
+                           const std::vector<std::size_t>& freedoms) {
+    return site.path == path && site.freedoms.empty() == freedoms.empty() &&
+           std::ranges::includes(freedoms, site.freedoms);
+  };
+  for (const subject::InnerSite& site : sites_)
+    if (is_there(site.place, place.path, place.freedoms) ||
+        std::ranges::any_of(place.others, [&](const auto& o) { return is_there(site.place, o.path, o.freedoms); }))
+      out.push_back(&site);
+  return out;
+}
+
+bool Changes::knows_forces_at(const subject::Place& place) const {
+  return is_known_by_statics(place) || !sites_at(place).empty();
+}
+
+std::optional<VectorX> Changes::by_curve(const effects::PlacedEffect& e, const Curve& curve) const {
+  const compare::ResidualStudy& study = observations_.comparison().study;
+  const subject::Place& place = *e.effect->place;
+  std::optional<VectorX> out;
+  if (is_known_by_statics(place)) {
+    if (const auto told = transmissions_->change(place, e.leg, curve, *study.data))
+      out = -statistics::rows_of(study.values, *told);
     return out;
   }
-  std::vector<double> forces;
-  const auto note = [&](double f) {
-    if (f != 0) forces.push_back(std::abs(f));
-    return f;
-  };
-  transmissions_->change(*e.effect->place, e.leg, note, *observations_.comparison().study.data);
-  std::sort(forces.begin(), forces.end());
-  std::size_t parts = parts_of_a_line;
-  if (kind == Curves::finer_lines) parts = std::min(parts_of_a_finer_line, forces.size() / forces_of_a_part);
-  if (parts < parts_of_a_line || (kind == Curves::finer_lines && parts == parts_of_a_line)) return out;
-  out.emplace_back([](double f) { return f == 0 ? 0 : std::copysign(1.0, f); });
-  out.emplace_back([](double f) { return f; });
-  for (std::size_t i = 1; i < parts && !forces.empty(); ++i)
-    for (const double sense : {-1.0, 1.0})
-      out.emplace_back(
-          [sense, knee = forces[i * forces.size() / parts]](double f) { return std::max(0.0, sense * f - knee); });
+  for (const subject::InnerSite* site : sites_at(place)) {
+    const VectorX own = compare::change_by_yielding(study, *site, curve);
+    out = out ? VectorX(*out + own) : own;
+  }
   return out;
 }
 
 MatrixX Changes::by_any_curve(const effects::PlacedEffect& e, Curves kind) const {
-  if (!e.effect->place || !is_known_by_statics(*e.effect->place)) return MatrixX(null_.size(), 0);
-  const compare::ResidualStudy& study = observations_.comparison().study;
   std::vector<MatrixX> out;
-  for (const subject::Transmissions::Curve& curve : curves_of(e, kind)) {
-    const auto told = transmissions_->change(*e.effect->place, e.leg, curve, *study.data);
-    if (!told) continue;
-    const VectorX change = -statistics::rows_of(study.values, *told);
-    if (const double length = change.norm(); length > 0) out.emplace_back(size_of_a_curve / length * change);
+  if (!e.effect->place) return MatrixX(null_.size(), 0);
+  std::vector<double> forces;
+  by_curve(e, [&](double f) {
+    if (f != 0) forces.push_back(std::abs(f));
+    return f;
+  });
+  for (const Curve& curve : curves_of(kind, std::move(forces))) {
+    const std::optional<VectorX> change = by_curve(e, curve);
+    if (const double length = change ? change->norm() : 0; length > 0)
+      out.emplace_back(size_of_a_curve / length * *change);
   }
   return statistics::side_by_side(out, null_.size());
 }

@@ -46,12 +46,15 @@ class Changes {
   /// moment about each axis, at each node that it acts on, or, at more than four, at all of them; at a load of a
   /// machine another point, another direction, and another size of each of its components; at a member of a frame an
   /// elongation that grows with the force that passes, one that grows in both senses of it, and a step where it turns,
-  /// which a gauge on the member itself does not read. At a member of a machine, of every leg or of one: sections that
-  /// stretch, twist and bend more about each of their axes, all along it. None at other places.
+  /// which a gauge on the member itself does not read; at a member end, a spring or a support the same of each freedom.
+  /// At a member of a machine, of every leg or of one: sections that stretch, twist and bend more about each of their
+  /// axes, all along it. None at other places.
   MatrixX by_whatever(const subject::Place&, std::optional<int> leg) const;
-  bool is_known_by_statics(const subject::Place&) const;
-  /// Any curve of deflection δ over force f, in each freedom of the effect's place in a machine. Columns of the size of
-  /// a motion of 1 mm; none where statics does not tell the forces.
+  /// Whether it is known which forces pass there and what a deflection changes: in a machine by statics, in a frame
+  /// whose laws are linear at members, member ends, springs and supports.
+  bool knows_forces_at(const subject::Place&) const;
+  /// Any curve of deflection δ over force f, in each freedom of the effect's place, and in a group at each part.
+  /// Columns of the size of a motion of 1 mm; none where the forces are not known.
   MatrixX by_any_curve(const effects::PlacedEffect&, Curves) const;
   using Curve = subject::Transmissions::Curve;
   /// Whether it is known what a force does that holds the place, which remembers: the place has one freedom, of a joint
@@ -75,7 +78,9 @@ class Changes {
   MatrixX by_any_load_of_a_machine(const subject::Place&) const;
   MatrixX by_any_elongation(const subject::Place&) const;
   MatrixX by_any_section(const subject::Place&, std::optional<int> leg) const;
-  std::vector<subject::Transmissions::Curve> curves_of(const effects::PlacedEffect&, Curves) const;
+  bool is_known_by_statics(const subject::Place&) const;
+  std::vector<const subject::InnerSite*> sites_at(const subject::Place&) const;  // of each part
+  std::optional<VectorX> by_curve(const effects::PlacedEffect&, const Curve&) const;
   const subject::NodeMotion* node_motion(const subject::Place&) const;
   bool agrees(const effects::PlacedEffect&) const;
   bool moved_by_play(const effects::EffectInstance&, const std::vector<bool>& readings, VectorX& change) const;
@@ -85,6 +90,7 @@ class Changes {
   const Observations observations_;
   VectorX null_;  ///< Observations::residual() of its subject
   std::unique_ptr<const subject::Transmissions> transmissions_;
+  std::vector<subject::InnerSite> sites_;  ///< of a frame, where force passes
   std::vector<subject::NodeMotion> node_motions_;
   std::map<std::string, bool> known_;  ///< by place: whether statics agrees
 };

@@ -6,13 +6,13 @@
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
 #include "validation/diagnosis/bootstrap.h"
-#include "validation/diagnosis/evidence.h"
 #include "validation/diagnosis/interval.h"
 #include "validation/diagnosis/larger_tolerances.h"
 #include "validation/diagnosis/left_over.h"
 #include "validation/diagnosis/rounds.h"
 #include "validation/diagnosis/selection.h"
 #include "validation/diagnosis/splitting.h"
+#include "validation/statistics/evidence.h"
 
 namespace deflect::diagnosis {
 namespace {
@@ -37,7 +37,7 @@ Quality quality(const Observations& o, const Hypothesis& h, const Fit& f) {
 
 /// Probabilities of the first step's candidates and of "nothing", beside that of "unknown".
 void weigh(Diagnosis& d, const LargerTolerances& larger, double unknown, double together = not_several) {
-  const std::vector<double> probability = normalised(log_weights(d.candidates, larger, together));
+  const std::vector<double> probability = statistics::normalised(log_weights(d.candidates, larger, together));
   const std::size_t count = d.candidates.size();
   for (std::size_t i = 0; i < count; ++i) d.candidates[i].probability = (1 - unknown) * probability[i];
   d.probability_larger_tolerances = (1 - unknown) * probability[count];
@@ -142,8 +142,8 @@ struct FirstStep {
 
   double probability_of_unknown_alone(const std::vector<Candidate>& alone) const {
     constexpr double missing_odds = Candidates::prior_missing / (1 - Candidates::prior_missing);
-    return probability_of(left.log_evidence - log_sum_exp(log_weights(alone, larger)),
-                          missing_odds * Candidates::prior_unknown);
+    return statistics::probability_of(left.log_evidence - statistics::log_sum_exp(log_weights(alone, larger)),
+                                      missing_odds * Candidates::prior_unknown);
   }
 
   const std::vector<Signature>& all() const { return signatures.all(); }
@@ -235,7 +235,7 @@ double log_odds_together(const FirstStep& s, const Explained& e) {
 
 /// Whether several effects together are likelier than larger tolerances, though none alone is.
 bool outweigh_larger_tolerances(const Explained& e, const FirstStep& s) {
-  return normalised({log_odds_together(s, e), s.larger.log_odds, 0}).front() > 1 - rather_nothing;
+  return statistics::normalised({log_odds_together(s, e), s.larger.log_odds, 0}).front() > 1 - rather_nothing;
 }
 
 /// Effects are looked for from small sizes. Where several were found, or more than noise is left: what is found from a
@@ -243,7 +243,7 @@ bool outweigh_larger_tolerances(const Explained& e, const FirstStep& s) {
 /// for the first effect then.
 std::optional<std::vector<Candidate>> look_for_large_ones(Explained& e, const FirstStep& s) {
   const Observations& o = s.observations;
-  const double by_noise = most_by_noise(static_cast<double>(o.numbers()));
+  const double by_noise = statistics::most_by_noise(static_cast<double>(o.numbers()));
   if (!e.left.significant() && e.found.effects.size() < 2 && e.found.fit.chi2 <= by_noise) return std::nullopt;
   auto large = s.candidates.likelier_if_larger(o, {}, s.null, s.each, e.left.significant());
   if (!large) return std::nullopt;
@@ -284,7 +284,8 @@ Diagnosed conclude(Diagnosis d, Explained e, const FirstStep& told, const measur
   d.candidates = told.candidates.fitted_again(told.observations, told.null, d.candidates, as_fitted(found));
   d.unexplained = e.left.significant();
   d.log_odds_unknown = e.left.log_evidence + std::log(unknown_beside);
-  if (!found.effects.empty()) weigh(d, told.larger, probability_of(e.left.log_evidence, unknown_beside), together);
+  if (!found.effects.empty())
+    weigh(d, told.larger, statistics::probability_of(e.left.log_evidence, unknown_beside), together);
   // In the first step something unknown counts for more than beside what was found: there nothing may be likelier.
   if (!d.unexplained && d.probability_nothing >= rather_nothing) found = nothing(told).found;
   sort_candidates(d);

@@ -7,16 +7,16 @@
 
 #include "msa/base/index.h"
 #include "validation/compare/slides.h"
-#include "validation/diagnosis/evidence.h"
 #include "validation/parallel/cases.h"
 #include "validation/statistics/columns.h"
+#include "validation/statistics/evidence.h"
 #include "validation/statistics/tail.h"
 
 namespace deflect::diagnosis {
 namespace {
 
 const std::vector<double>& scales() {
-  static const std::vector<double> all = log_spaced(1e-3, 10, 40);
+  static const std::vector<double> all = statistics::log_spaced(1e-3, 10, 40);
   return all;
 }
 
@@ -61,7 +61,9 @@ MatrixX by_influence(const compare::ResidualStudy& s) {
   return out;
 }
 
-MatrixX by_sites(const compare::ResidualStudy& s) {
+}  // namespace
+
+MatrixX site_patterns(const compare::ResidualStudy& s) {
   std::vector<MatrixX> parts;
   for (const compare::Pattern& p : compare::patterns_of(s)) parts.push_back(p.rows);
   if (!s.sites.front().empty()) {
@@ -89,6 +91,8 @@ MatrixX by_sites(const compare::ResidualStudy& s) {
   if (!s.standing->has_tool_point()) parts.push_back(by_influence(s));
   return statistics::side_by_side(parts, std::ssize(s.values));
 }
+
+namespace {
 
 /// At each pose and for each freedom c of what is read (column b n + c): as much as 10 N do (in a frame all loads), and
 /// what is in proportion to each load.
@@ -148,25 +152,25 @@ MatrixX by_loads(const compare::ResidualStudy& s) {
 
 }  // namespace
 
-Families discrepancy_families(const compare::ResidualStudy& s) { return {by_sites(s), by_poses(s), by_loads(s)}; }
+Families discrepancy_families(const compare::ResidualStudy& s) { return {site_patterns(s), by_poses(s), by_loads(s)}; }
 
-WhitenedFamilies::WhitenedFamilies(const Families& all, std::shared_ptr<const statistics::Whitening> with, int threads)
+WhitenedFamilies::WhitenedFamilies(Families all, std::shared_ptr<const statistics::Whitening> with, int threads)
     : whitening(std::move(with)) {
   const double length = std::sqrt(static_cast<double>(whitening->rows()));
   const auto factor = [length](double norm) { return norm > 0 ? length / norm : 0; };
-  for (const statistics::PartedColumns& family : all) {
+  for (statistics::PartedColumns& family : all) {
     Family out;
     // A few columns at a time: their number does not depend on the threads, lest sums do.
     constexpr Eigen::Index some = 16;
-    out.columns.resize(family.shared.rows(), family.shared.cols());
-    parallel::for_each_case(as_size((family.shared.cols() + some - 1) / some), 1, threads, [&](std::size_t k) {
-      const Eigen::Index first = as_index(k) * some, count = std::min(some, family.shared.cols() - first);
-      MatrixX X = (*whitening)(family.shared.middleCols(first, count));
+    out.columns = std::move(family.shared);
+    parallel::for_each_case(as_size((out.columns.cols() + some - 1) / some), 1, threads, [&](std::size_t k) {
+      const Eigen::Index first = as_index(k) * some, count = std::min(some, out.columns.cols() - first);
+      MatrixX X = (*whitening)(out.columns.middleCols(first, count));
       for (auto column : X.colwise()) column *= factor(column.norm());
       out.columns.middleCols(first, count) = X;
     });
     out.gram = out.columns.transpose() * out.columns;
-    out.groups = family.groups;
+    out.groups = std::move(family.groups);
     whitening->white_within_groups(out.groups);
     parallel::for_each_case(out.groups.size(), 1, threads, [&](std::size_t k) {
       statistics::GroupColumns& g = out.groups[k];
@@ -238,7 +242,7 @@ double Discrepancy::log_evidence(const VectorX& r) const {
   std::vector<double> all;
   for (std::size_t f = 0; f < families_.size(); ++f)
     for (const double l : log_likelihoods(f, r)) all.push_back(l);
-  return log_mean_exp(all);
+  return statistics::log_mean_exp(all);
 }
 
 Discrepancy::Size Discrepancy::likeliest(const VectorX& r) const {

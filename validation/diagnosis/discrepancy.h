@@ -21,11 +21,13 @@ namespace deflect::diagnosis {
 /// One matrix per family, its rows the measured numbers (m, rad per unit of the pattern); groups: poses.
 using Families = std::vector<statistics::PartedColumns>;
 Families discrepancy_families(const compare::ResidualStudy&);
+/// The family of sites.
+MatrixX site_patterns(const compare::ResidualStudy&);
 
 /// The same whitened, each column scaled to length √n unless it is 0. A family consists either of columns over all
 /// numbers or of columns by group.
 struct WhitenedFamilies {
-  WhitenedFamilies(const Families&, std::shared_ptr<const statistics::Whitening>, int threads = 1);
+  WhitenedFamilies(Families, std::shared_ptr<const statistics::Whitening>, int threads = 1);
 
   struct Family {
     MatrixX columns, gram;                         // white; XᵀX

@@ -68,22 +68,18 @@ class CanGain {
  public:
   double operator()(const Signature& s, double said) const {
     if (!s.shaped) return s.effect.effect->place ? 1.1 * said + 3 : 1.2 * said + bent;
-    const auto of_law = times_.find(law_of(s));
+    const auto of_law = times_.find(law_of(s.effect));
     return (of_law == times_.end() ? usual : std::max(usual, of_law->second)) * said + bent;
   }
 
   void note(const Signature& s, double said, double gained) {
     if (!s.shaped || said < near_nothing) return;
-    double& most = times_[law_of(s)];
+    double& most = times_[law_of(s.effect)];
     most = std::max(most, (gained - bent) / said);
   }
 
  private:
   static constexpr double usual = 1.2;
-  static std::string law_of(const Signature& s) {
-    const std::string& name = s.effect.effect->name;
-    return name.substr(0, name.find('@'));
-  }
   std::map<std::string, double> times_;
 };
 

@@ -380,4 +380,17 @@ bool at_one_place(const effects::PlacedEffect& a, const effects::PlacedEffect& b
          subject::id_of(*at) == subject::id_of(*other);
 }
 
+bool is_wider(const effects::PlacedEffect& wide, const effects::PlacedEffect& one) {
+  const std::optional<subject::Place>&group = wide.effect->place, &place = one.effect->place;
+  if (!group || !place || same(wide, one) || wide.leg != one.leg || law_of(wide) != law_of(one)) return false;
+  const auto has = [&](const std::string& path, const std::vector<std::size_t>& freedoms) {
+    return (group->path == path && group->freedoms == freedoms) ||
+           std::any_of(group->others.begin(), group->others.end(),
+                       [&](const subject::OtherPart& o) { return o.path == path && o.freedoms == freedoms; });
+  };
+  return has(place->path, place->freedoms) &&
+         std::all_of(place->others.begin(), place->others.end(),
+                     [&](const subject::OtherPart& o) { return has(o.path, o.freedoms); });
+}
+
 }  // namespace deflect::diagnosis

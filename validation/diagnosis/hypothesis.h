@@ -24,6 +24,9 @@ inline bool is_among(const Hypothesis& h, const effects::PlacedEffect& e) {
   return std::any_of(h.begin(), h.end(), [&](const effects::PlacedEffect& p) { return same(p, e); });
 }
 
+/// Of an effect at a place "clearance", of an entry its name.
+inline std::string law_of(const effects::PlacedEffect& e) { return e.effect->name.substr(0, e.effect->name.find('@')); }
+
 /// "guide_root_compliance", "leg_defect (leg 5)".
 std::string name_of(const effects::PlacedEffect&);
 
@@ -87,5 +90,7 @@ bool turns_as_it_grows(const effects::Effect&);
 
 /// Of two laws at places.
 bool at_one_place(const effects::PlacedEffect&, const effects::PlacedEffect&);
+/// Whether the first is the same law at a group that has the place of the second.
+bool is_wider(const effects::PlacedEffect&, const effects::PlacedEffect&);
 
 }  // namespace deflect::diagnosis

@@ -5,7 +5,7 @@
 
 #include "msa/base/index.h"
 #include "msa/base/outcome.h"
-#include "validation/diagnosis/evidence.h"
+#include "validation/statistics/evidence.h"
 
 namespace deflect::diagnosis {
 namespace {
@@ -23,20 +23,20 @@ LargerTolerances larger_tolerances(const Observations& o, double prior) {
   // Observations that look larger than declared already count as far as they look.
   const double room = largest_tolerances / o.tolerance_scale();
   if (!(room > 1.01)) return out;
-  std::vector<double> scales = log_spaced(1, room, sizes_tried);
+  std::vector<double> scales = statistics::log_spaced(1, room, sizes_tried);
   scales.push_back(1);
   std::vector<double> likelihood = o.log_likelihood_of_scales(o.subject(), scales);
   const double as_declared = likelihood.back();
   likelihood.pop_back();
   const auto best = std::max_element(likelihood.begin(), likelihood.end());
   out.scale = scales[as_size(best - likelihood.begin())];
-  out.log_odds = std::log(prior) + log_mean_exp(likelihood) - as_declared;
+  out.log_odds = std::log(prior) + statistics::log_mean_exp(likelihood) - as_declared;
   return out;
 }
 
 double tolerance_scale_beside(const Observations& o, const subject::Subject& right, std::optional<double> unknown) {
   if (unknown && larger_tolerances(o.about(right)).log_odds < *unknown) return o.tolerance_scale();
-  std::vector<double> scales = log_spaced(1, largest_tolerances, sizes_tried);
+  std::vector<double> scales = statistics::log_spaced(1, largest_tolerances, sizes_tried);
   std::vector<double> weighed = scales;
   for (double& s : weighed) s /= o.tolerance_scale();
   const std::vector<double> likelihood = o.log_likelihood_of_scales(right, weighed);
@@ -62,7 +62,7 @@ std::vector<double> log_weights(const std::vector<Candidate>& all, const LargerT
   std::vector<double> out;
   for (const Candidate& c : all) out.push_back(c.log_odds);
   if (!out.empty())
-    if (const double more = together - log_sum_exp(out); more > 0)
+    if (const double more = together - statistics::log_sum_exp(out); more > 0)
       for (double& each : out) each += more;
   out.push_back(larger.log_odds);
   out.push_back(0);

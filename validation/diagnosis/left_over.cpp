@@ -7,10 +7,10 @@
 
 #include "msa/base/index.h"
 #include "validation/compare/findings.h"
-#include "validation/diagnosis/evidence.h"
 #include "validation/effects/edit_paths.h"
 #include "validation/effects/place_effects.h"
 #include "validation/statistics/columns.h"
+#include "validation/statistics/evidence.h"
 #include "validation/statistics/tail.h"
 
 namespace deflect::diagnosis {
@@ -130,7 +130,7 @@ std::string pattern_left(const Selection& found, const std::vector<Localised>& p
 LeftOver left_over(const std::shared_ptr<const WhitenedFamilies>& patterns, const std::vector<AtPlace>& places,
                    const Fit& fit) {
   const Discrepancy common(patterns, fit.signature);
-  return {log_mean_exp({common.log_evidence(fit.residual), log_evidence(places)}),
+  return {statistics::log_mean_exp({common.log_evidence(fit.residual), log_evidence(places)}),
           std::min(1.0, 2 * std::min(common.p_value(fit.residual), p_value(places)))};
 }
 
@@ -211,7 +211,8 @@ bool is_all_at_one_place(const ByPlaces& places, const Candidates& candidates, c
   if (!one.place || one.likelier < clearly_one_place) return false;
   const bool others = std::any_of(s.effects.begin(), s.effects.end(),
                                   [&](const auto& e) { return !at_the_same_part(e, *one.place, s.observations); });
-  return one.left < most_by_noise(static_cast<double>(s.observations.numbers())) + (others ? small_rest * one.of : 0);
+  return one.left <
+         statistics::most_by_noise(static_cast<double>(s.observations.numbers())) + (others ? small_rest * one.of : 0);
 }
 
 Selection named_beside_unknown(const std::shared_ptr<const WhitenedFamilies>& patterns, const Weighed& all,

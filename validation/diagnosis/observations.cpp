@@ -46,6 +46,13 @@ std::optional<VectorX> deformed_shape_of(const compare::ResidualStudy& s, const 
       .value;
 }
 
+/// The last shared column becomes that of the deformed shape. Where play stands in the deformed shape is a yes or no
+/// that a fifth of the shape does not change.
+std::shared_ptr<const statistics::PartedColumns> beside_shape(statistics::PartedColumns A, const VectorX& bent) {
+  A.shared.rightCols<1>() = compare::shape_known_to * bent;
+  return std::make_shared<const statistics::PartedColumns>(std::move(A));
+}
+
 /// Whether so many readings may be set aside as gross outliers: one in twenty, but of a few readings one as well.
 bool are_few(const std::vector<bool>& aside) {
   const auto count = as_size(std::count(aside.begin(), aside.end(), true));
@@ -59,12 +66,10 @@ Observations::Observations(const subject::Subject& subject, const measurement::M
                            std::optional<double> tolerance_scale)
     : subject_(subject),
       comparison_(std::make_shared<const compare::Comparison>(compare::compare(subject, data, o, work))),
-      patterns_(std::make_shared<const Families>(discrepancy_families(comparison_->study))),
       threads_(work.threads),
-      A_(comparison_->tolerances.A),
       aside_(set_aside_by(*comparison_)),
       load_errors_(std::make_shared<const statistics::LoadErrors>(comparison_->study.load_errors)),
-      uncertainty_(uncertainty_of(*comparison_, A_, *load_errors_, aside_)) {
+      uncertainty_(uncertainty_of(*comparison_, comparison_->tolerances.A, *load_errors_, aside_)) {
   const compare::ResidualStudy& s = comparison_->study;
   measured_ = comparison_->residual + statistics::rows_of(s.values, s.predicted);
   in_linear_ = statistics::rows_of(s.values, s.predicted);
@@ -79,11 +84,12 @@ Observations::Observations(const subject::Subject& subject, const measurement::M
     shape_ -= in_linear_;
   }
   bent_ = bent_of(subject);
-  tolerance_scale_ = tolerance_scale ? *tolerance_scale
-                                     : uncertainty_->scale_of_tolerances(residual(subject), patterns_->front().shared);
-  A_ *= tolerance_scale_;
-  A_.shared.conservativeResize(Eigen::NoChange, A_.shared.cols() + 1);
-  count_shape();
+  tolerance_scale_ =
+      tolerance_scale ? *tolerance_scale : uncertainty_->scale_of_tolerances(residual(subject), site_patterns(s));
+  statistics::PartedColumns A = comparison_->tolerances.A;
+  A *= tolerance_scale_;
+  A.shared.conservativeResize(Eigen::NoChange, A.shared.cols() + 1);
+  A_ = beside_shape(std::move(A), bent_);
   weigh(aside_);
 }
 
@@ -91,9 +97,9 @@ std::vector<double> Observations::log_likelihood_of_scales(const subject::Subjec
                                                            const std::vector<double>& scales) const {
   std::vector<Eigen::Index> free;
   const std::vector<subject::Tolerance>& all = comparison_->tolerances.nuisances;
-  for (Eigen::Index i = 0; i + 1 < A_.shared.cols(); ++i)
+  for (Eigen::Index i = 0; i + 1 < A_->shared.cols(); ++i)
     if (nth(all, i).zero) free.push_back(i);
-  free.push_back(A_.shared.cols() - 1);  // of the deformed shape
+  free.push_back(A_->shared.cols() - 1);  // of the deformed shape
   return uncertainty_->log_likelihood_of_scales(residual(subject), MatrixX(measured_.size(), 0), scales, free);
 }
 
@@ -104,38 +110,36 @@ VectorX Observations::bent_of(const subject::Subject& subject) const {
   return deformed_shape_of(comparison_->study, subject, in_linear_, apart).value_or(shape_);
 }
 
-/// Where play stands in the deformed shape is a yes or no that a fifth of the shape does not change.
-void Observations::count_shape() { A_.shared.rightCols<1>() = compare::shape_known_to * bent_; }
-
 void Observations::move_tolerances(const subject::Subject& subject) {
   const compare::ResidualStudy& s = comparison_->study;
   auto moved = outcome_of([&] {
     return statistics::tolerance_model(*subject.stand(*s.data, s.standing.get()), *s.data, s.values, {threads_});
   });
-  if (!moved || moved->A.groups.size() != A_.groups.size()) return;
+  if (!moved || moved->A.groups.size() != A_->groups.size()) return;
   // A law that an effect adds may have numbers to which a tolerance applies: these are fitted. They come behind those
   // of the laws that were there, by the same name.
-  const Eigen::Index shared = A_.shared.cols();
+  const Eigen::Index shared = A_->shared.cols();
   std::vector<Eigen::Index> same;
   for (Eigen::Index i = 0; i < moved->A.shared.cols() && std::ssize(same) + 1 < shared; ++i)
     if (nth(moved->nuisances, i).name == comparison_->tolerances.nuisances[same.size()].name) same.push_back(i);
   if (std::ssize(same) + 1 != shared) return;
-  A_ = moved->A;
-  A_.shared = moved->A.shared(Eigen::all, same);
-  A_ *= tolerance_scale_;
-  A_.shared.conservativeResize(Eigen::NoChange, shared);
-  count_shape();
+  statistics::PartedColumns A = std::move(moved->A);
+  A.shared = MatrixX(A.shared(Eigen::all, same));
+  A *= tolerance_scale_;
+  A.shared.conservativeResize(Eigen::NoChange, shared);
+  A_ = beside_shape(std::move(A), bent_);
 }
 
 void Observations::weigh(const std::vector<bool>& aside) {
   aside_ = aside;
-  uncertainty_ = uncertainty_of(*comparison_, A_, *load_errors_, aside_);
+  uncertainty_ = uncertainty_of(*comparison_, *A_, *load_errors_, aside_);
   held_out_.emplace(comparison_->study, *uncertainty_, aside_);
   null_ = whitened_residual(subject_);
 }
 
 std::shared_ptr<const WhitenedFamilies> Observations::whitened_patterns() const {
-  return std::make_shared<const WhitenedFamilies>(*patterns_, uncertainty_->whitening(), threads_);
+  return std::make_shared<const WhitenedFamilies>(discrepancy_families(comparison_->study), uncertainty_->whitening(),
+                                                  threads_);
 }
 
 std::size_t Observations::set_aside() const { return as_size(std::count(aside_.begin(), aside_.end(), true)); }
@@ -206,7 +210,7 @@ VectorX Observations::from_zero(VectorX residual) const {
   if (std::none_of(all.begin(), all.end(), [](const subject::Tolerance& t) { return t.zero; })) return residual;
   const VectorX eta = uncertainty_->nuisances(residual);
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (all[i].zero) residual -= eta(as_index(i)) * A_.shared.col(as_index(i));
+    if (all[i].zero) residual -= eta(as_index(i)) * A_->shared.col(as_index(i));
   return residual;
 }
 
@@ -228,7 +232,7 @@ bool Observations::falls_held_out(const subject::Subject& subject, const subject
 
 std::vector<std::pair<std::string, double>> Observations::strained(const subject::Subject& subject) const {
   const VectorX eta = uncertainty_->nuisances(residual(subject));
-  const Eigen::Index shape = A_.shared.cols() - 1;  // between the tolerances of all poses and those of each
+  const Eigen::Index shape = A_->shared.cols() - 1;  // between the tolerances of all poses and those of each
   std::vector<std::pair<std::string, double>> out;
   const auto look_at = [&](const std::string& name, double deviations) {
     if (std::abs(deviations) > 2) out.emplace_back(name, deviations);
@@ -252,13 +256,13 @@ Observations Observations::granted(const subject::Subject& subject) const {
     out.floating_ = std::move(own.floating);
     out.bent_ = out.bent_of(subject);
   }
-  out.count_shape();
+  out.A_ = beside_shape(*A_, out.bent_);
   out.move_tolerances(subject);
   const VectorX left = out.residual(subject);
   const std::vector<double>& sigma = comparison_->sigma;
   out.load_errors_ = std::make_shared<const statistics::LoadErrors>(
-      compare::with_open_play(s, *load_errors_, play, out.A_, sigma, left));
-  const std::vector<bool> aside = compare::gross_outliers(s, *out.load_errors_, out.A_, sigma, left, {}).aside;
+      compare::with_open_play(s, *load_errors_, play, *out.A_, sigma, left));
+  const std::vector<bool> aside = compare::gross_outliers(s, *out.load_errors_, *out.A_, sigma, left, {}).aside;
   out.weigh(are_few(aside) ? aside : aside_);
   return out;
 }
@@ -327,7 +331,9 @@ Observations Observations::keeping(const std::vector<bool>& aside) const {
 
 Observations Observations::exact_in(const std::vector<std::size_t>& tolerances) const {
   Observations out = *this;
-  for (const std::size_t i : tolerances) out.A_.shared.col(as_index(i)).setZero();
+  statistics::PartedColumns A = *A_;
+  for (const std::size_t i : tolerances) A.shared.col(as_index(i)).setZero();
+  out.A_ = std::make_shared<const statistics::PartedColumns>(std::move(A));
   out.weigh(out.aside_);
   return out;
 }

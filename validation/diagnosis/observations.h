@@ -125,17 +125,15 @@ class Observations {
   /// What the deformed shape of `subject`, for which in_linear_ and floating_ stand, adds where it does not move that
   /// play.
   VectorX bent_of(const subject::Subject&) const;
-  void count_shape();
   void move_tolerances(const subject::Subject&);
 
   subject::Subject subject_;
   // Shared by all copies that granted() makes.
   std::shared_ptr<const compare::Comparison> comparison_;
-  std::shared_ptr<const Families> patterns_;
   int threads_;
-  statistics::PartedColumns A_;  // the last shared column is that of the deformed shape
   double tolerance_scale_ = 1;
   std::vector<bool> aside_;
+  std::shared_ptr<const statistics::PartedColumns> A_;  // the last shared column is that of the deformed shape
   std::shared_ptr<const statistics::LoadErrors> load_errors_;
   std::shared_ptr<const statistics::Uncertainty> uncertainty_;
   std::optional<compare::HeldOut> held_out_;

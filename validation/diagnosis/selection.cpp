@@ -8,19 +8,14 @@
 #include <tuple>
 
 #include "msa/base/index.h"
-#include "validation/diagnosis/evidence.h"
-#include "validation/diagnosis/fit_problem.h"
 
 namespace deflect::diagnosis {
 namespace {
 
 constexpr std::size_t usual_effects = 4, most_effects = 6, most_rounds = 12;
-constexpr double own_part_of_many = 0.5;       // of χ²: what more effects than usual must take off, each
-constexpr double sure = 0.9, together = 0.95;  // probabilities: of one alone; of those that tie
-constexpr double better = 1;                   // ln of the odds for which one effect is taken for another
-constexpr double far_rarer = 1.5;              // ln of the odds before any reading, of two that are one to these data
+constexpr double own_part_of_many = 0.5;  // of χ²: what more effects than usual must take off, each
+constexpr double better = 1;              // ln of the odds for which one effect is taken for another
 constexpr double never = -1e6;
-constexpr double as_good = 1;    // of χ²
 constexpr double far_worse = 2;  // times the error in the shape that was granted before
 constexpr int most_passes = 6;
 
@@ -61,7 +56,7 @@ class Search {
         grant(best->hypothesis, best->fit.values);
         return true;
       }
-      if (const Candidate* simpler = simpler_form(own, all)) {
+      if (const Candidate* simpler = simpler_form(own, all, seen())) {
         const Candidate instead = *simpler;
         const bool back = goes_back(instead.hypothesis);
         grant(instead.hypothesis, instead.fit.values);
@@ -70,14 +65,14 @@ class Search {
         note_ties();
         return false;
       }
-      s_.ties[i] = tie(all);
+      s_.ties[i] = tie_of(all, seen());
       if (s_.ties[i].names.empty()) continue;
-      if (!holds(s_.ties[i], own) && !goes_back(s_.ties[i].rivals.front().hypothesis)) {
+      if (!s_.ties[i].holds(own) && !goes_back(s_.ties[i].rivals.front().hypothesis)) {
         const Candidate instead = s_.ties[i].rivals.front();
         grant(instead.hypothesis, instead.fit.values);
         return true;
       }
-      if (own.fit.found) put_first(s_.ties[i], own);
+      if (own.fit.found) s_.ties[i].put_first(own);
     }
     return false;
   }
@@ -86,8 +81,8 @@ class Search {
   void note_ties() {
     for (std::size_t i = 0; i < s_.effects.size(); ++i) {
       const std::optional<AskedAgain> asked = asked_again(i);
-      s_.ties[i] = asked && asked->own.fit.found ? tie(asked->all) : Tie{};
-      if (!s_.ties[i].names.empty()) put_first(s_.ties[i], asked->own);
+      s_.ties[i] = asked && asked->own.fit.found ? tie_of(asked->all, seen()) : Tie{};
+      if (!s_.ties[i].names.empty()) s_.ties[i].put_first(asked->own);
     }
   }
 
@@ -133,21 +128,6 @@ class Search {
     return AskedAgain{std::move(others), std::move(rest), std::move(all), std::move(own)};
   }
 
-  static bool holds(const Tie& t, const Candidate& c) {
-    return std::find(t.names.begin(), t.names.end(), c.added().effect->name) != t.names.end();
-  }
-
-  /// What was found comes before those that tie with it.
-  static void put_first(Tie& t, const Candidate& own) {
-    if (!holds(t, own)) {
-      t.names.push_back(own.added().effect->name);
-      t.rivals.push_back(own);
-    }
-    const auto k = std::find(t.names.begin(), t.names.end(), own.added().effect->name) - t.names.begin();
-    std::rotate(t.names.begin(), t.names.begin() + k, t.names.begin() + k + 1);
-    std::rotate(t.rivals.begin(), t.rivals.begin() + k, t.rivals.begin() + k + 1);
-  }
-
   /// Effect i as it is fitted now.
   effects::EffectInstance present(std::size_t i) const {
     Eigen::Index first = 0;
@@ -183,8 +163,9 @@ class Search {
     const auto [h, values] = without(s_.effects, s_.fit.values, second);
     const Fit alone = fit_of_all(seen(), h, values);
     if (!alone.found) return never;
-    return candidates_.class_log_odds_of(s_.effects[first], gain(rest, alone)) +
-           candidates_.class_log_odds_of(s_.effects[second], gain(alone, s_.fit));
+    const double of_first = gain(rest, alone);
+    return candidates_.class_log_odds_of(s_.effects[first], of_first) +
+           candidates_.class_log_odds_of(s_.effects[second], std::max(0.0, gain(rest, s_.fit) - of_first));
   }
 
   static double gain(const Fit& without, const Fit& with) { return std::max(0.0, without.chi2 - with.chi2); }
@@ -257,100 +238,6 @@ class Search {
     s_.effects = h;
     s_.fit = std::move(f);
     s_.ties.assign(h.size(), {});
-  }
-
-  /// Whether these data leave open one of the parameters of a law that bends: of a friction that never slips its force.
-  static bool leaves_one_open(const Candidate& c) {
-    constexpr double deviations = 10;  // a step of size 1 is a large one
-    const auto own = std::ssize(c.added().effect->parameters);
-    return is_shaped(c.added()) && c.fit.covariance.rows() >= own &&
-           c.fit.covariance.diagonal().tail(own).maxCoeff() > deviations * deviations;
-  }
-
-  std::optional<VectorX> left_by(const Candidate& c, const VectorX& values) const {
-    const FitProblem problem(seen(), c.hypothesis);
-    return problem.residual(problem.coordinates(values));
-  }
-
-  /// What is left where one of its own parameters, on a logarithmic scale, stands at a bound, as far as it may stand
-  /// there: that of a friction that need not slip. Its derivative only says where it would begin to.
-  std::vector<VectorX> left_at_bounds(const Candidate& c) const {
-    std::vector<VectorX> out;
-    const auto fitted = left_by(c, c.fit.values);
-    const std::vector<effects::EffectParameter>& own = c.added().effect->parameters;
-    for (std::size_t i = 0; i < own.size() && fitted; ++i)
-      for (const double bound : {own[i].low, own[i].high}) {
-        if (!own[i].log) continue;
-        VectorX values = c.fit.values;
-        values(values.size() - std::ssize(own) + as_index(i)) = bound;
-        auto there = left_by(c, values);
-        if (there && there->squaredNorm() < fitted->squaredNorm() + as_good) out.push_back(std::move(*there));
-      }
-    return out;
-  }
-
-  /// Nor is a common cause another name of a law that is less likely, because it has fewer parameters.
-  static bool does_as_well(const Candidate& simpler, const Candidate& c) {
-    const auto parameters = [](const Candidate& x) { return x.added().effect->parameters.size(); };
-    return simpler.fit.found && c.fit.found && parameters(simpler) < parameters(c) &&
-           simpler.fit.chi2 < c.fit.chi2 + as_good && simpler.log_odds >= c.log_odds;
-  }
-
-  /// The likeliest of those that do as well and leave the same as it does at a bound, as a restraint does; null where
-  /// there is none.
-  const Candidate* simpler_form(const Candidate& c, const std::vector<Candidate>& all) const {
-    std::vector<const Candidate*> simpler;
-    for (const Candidate& other : all)
-      if (does_as_well(other, c)) simpler.push_back(&other);
-    const std::vector<VectorX> at_bounds = simpler.empty() ? std::vector<VectorX>() : left_at_bounds(c);
-    const Candidate* out = nullptr;
-    for (const Candidate* other : simpler) {
-      if (at_bounds.empty() || (out && out->log_odds >= other->log_odds)) continue;
-      const auto left = left_by(*other, other->fit.values);
-      const auto is_left = [&](const VectorX& there) { return left && (there - *left).squaredNorm() < as_good; };
-      if (std::any_of(at_bounds.begin(), at_bounds.end(), is_left)) out = other;
-    }
-    return out;
-  }
-
-  /// Whether it is a simpler candidate under another name: it stands at a bound of its own or leaves one of its
-  /// parameters open, and one with fewer parameters does as well; or it may be that one.
-  bool is_another(const Candidate& c, const std::vector<Candidate>& all) const {
-    const auto does = [&](const Candidate& other) { return does_as_well(other, c); };
-    if (std::none_of(all.begin(), all.end(), does)) return false;
-    return runs_to_a_bound(c.hypothesis, c.fit) || leaves_one_open(c) || simpler_form(c, all);
-  }
-
-  /// Whether a member of its own class stands for it: these data cannot tell the two apart, and before any reading this
-  /// one is far rarer, as a law at a place beside an entry that does the same.
-  static bool is_stood_for(const Candidate& c, const Tie& group) {
-    return std::any_of(group.rivals.begin(), group.rivals.end(), [&](const Candidate& r) {
-      return r.class_log_odds == c.class_log_odds && std::abs(r.fit.chi2 - c.fit.chi2) < as_good &&
-             r.log_odds > c.log_odds + far_rarer;
-    });
-  }
-
-  Tie tie(const std::vector<Candidate>& all) const {
-    std::vector<double> log_odds;
-    for (const Candidate& c : all) log_odds.push_back(c.fit.found && !is_another(c, all) ? c.log_odds : never);
-    const std::vector<double> among = normalised(log_odds);
-    std::vector<std::size_t> by(all.size());
-    for (std::size_t i = 0; i < by.size(); ++i) by[i] = i;
-    std::stable_sort(by.begin(), by.end(), [&](std::size_t a, std::size_t b) { return among[a] > among[b]; });
-    if (by.empty() || among[by.front()] > sure) return {};
-    Tie group;
-    double sum = 0;
-    for (const std::size_t i : by) {
-      const std::string& name = all[i].added().effect->name;
-      if (std::find(group.names.begin(), group.names.end(), name) == group.names.end() &&
-          !is_stood_for(all[i], group)) {
-        group.names.push_back(name);
-        group.rivals.push_back(all[i]);
-        group.rivals.back().probability = among[i];
-      }
-      if ((sum += among[i]) > together) break;
-    }
-    return group.names.size() > 1 ? group : Tie{};
   }
 
   Selection s_;

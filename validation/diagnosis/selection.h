@@ -11,14 +11,9 @@
 #include <functional>
 
 #include "validation/diagnosis/candidates.h"
+#include "validation/diagnosis/ties.h"
 
 namespace deflect::diagnosis {
-
-/// What does nearly as well as an effect, in its place.
-struct Tie {
-  std::vector<std::string> names;  ///< what was found, then the best first, until they have 95 % of the probability
-  std::vector<Candidate> rivals;   ///< the best of each name, as fitted, with its probability among all
-};
 
 struct Selection {
   Observations observations;      ///< with the effects found (Observations::granted)

@@ -18,8 +18,7 @@ void for_each_place(const subject::Subject& subject, const Does& does) {
   }
 }
 
-/// Columns over the measured numbers: of members, loads and supports Changes::by_whatever(), of sensors
-/// channel_shapes(), and of a frame's member ends and springs what they change where they yield (yielding.h).
+/// Columns over the measured numbers: of sensors channel_shapes(), of all else Changes::by_whatever().
 std::map<Spot, MatrixX> whatever_columns(const Observations&, const Changes&);
 
 }  // namespace deflect::diagnosis

@@ -23,13 +23,13 @@ Spot spot_of(const subject::Place&, std::optional<int> leg);
 
 class WhateverTheLaw {
  public:
-  /// `columns`: of members and loads those of Changes::by_whatever(), of sensors channel_shapes().
+  /// `columns`: whatever_columns().
   WhateverTheLaw(std::shared_ptr<const Changes>, std::map<Spot, MatrixX> columns);
 
-  /// At sensors, members and loads, as these observations weigh it; null elsewhere, and at groups.
+  /// Where there are such columns, as these observations weigh them; null elsewhere.
   Columns at(const subject::Place&, std::optional<int> leg, std::shared_ptr<const Observations>) const;
-  /// Any curve of deflection over force where an effect in a machine acts (Changes::by_any_curve()); null where statics
-  /// does not tell the forces.
+  /// Any curve of deflection over force where an effect acts (Changes::by_any_curve()); null where the
+  /// forces are not known.
   AnyCurve curve_at(const effects::PlacedEffect&, std::shared_ptr<const Observations>) const;
   /// Any friction beside what is there; null where it is not known what that does (Changes::may_be_held()).
   Columns friction_at(const subject::Place&, std::optional<int> leg, std::shared_ptr<const Observations>) const;

@@ -1,4 +1,4 @@
-#include "validation/diagnosis/evidence.h"
+#include "validation/statistics/evidence.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "validation/statistics/tail.h"
 
-namespace deflect::diagnosis {
+namespace deflect::statistics {
 
 double log_mean_exp(const std::vector<double>& x) {
   const double most = *std::max_element(x.begin(), x.end());
@@ -47,4 +47,4 @@ std::vector<double> normalised(const std::vector<double>& x) {
   return out;
 }
 
-}  // namespace deflect::diagnosis
+}  // namespace deflect::statistics

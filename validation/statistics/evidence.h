@@ -6,16 +6,16 @@
 // influence. The evidence against "nothing" is then
 //   B = ⟨ (1 + τ²)^(−k/2) exp(½ g τ²/(1 + τ²)) s ⟩_τ,   s = 2 Φ(√g τ/√(1 + τ²)) where the sign is fixed, else 1.
 //
-// Play that is wider than the motion and a part that is gone predict the same (lets_go(), signatures.h). Their gains
-// are then equal and so is the evidence, but for the sign that physics fixes: they come as a tie. This is a convention.
-// B asks how far a residual is from nothing, not how much of a parameter's range is as good: all widths from the one at
-// which nothing touches, however many there are, count once, as does the one stiffness 0. A prior on the width itself
-// would give play as much more or less as it has beyond that width, which nobody knows.
+// Play that is wider than the motion and a part that is gone predict the same (lets_go(), diagnosis/signatures.h).
+// Their gains are then equal and so is the evidence, but for the sign that physics fixes: they come as a tie. This is a
+// convention. B asks how far a residual is from nothing, not how much of a parameter's range is as good: all widths
+// from the one at which nothing touches, however many there are, count once, as does the one stiffness 0. A prior on
+// the width itself would give play as much more or less as it has beyond that width, which nobody knows.
 #pragma once
 
 #include <vector>
 
-namespace deflect::diagnosis {
+namespace deflect::statistics {
 
 /// ln B.
 double log_evidence(double gain, int parameters, bool one_sided);
@@ -36,4 +36,4 @@ double most_by_noise(double numbers);
 /// `count` numbers between low and high, evenly spaced in their logarithm, none at the ends.
 std::vector<double> log_spaced(double low, double high, int count);
 
-}  // namespace deflect::diagnosis
+}  // namespace deflect::statistics

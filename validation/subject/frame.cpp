@@ -47,6 +47,9 @@ class FrameStanding : public Standing {
   InnerSites inner_sites(const measurement::Measurements& data) const override {
     return inner_sites_of(*frame_, data, *known_);
   }
+  std::vector<InnerSite> joint_sites(const measurement::Measurements& data) const override {
+    return joint_sites_of(*frame_, data, *known_);
+  }
   std::vector<NodeMotion> node_motions(const measurement::Measurements& data) const override {
     return node_motions_of(*frame_, data, *known_);
   }

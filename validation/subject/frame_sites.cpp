@@ -106,9 +106,10 @@ InnerSites inner_sites_of(const FrameDescription& f, const measurement::Measurem
   return out;
 }
 
-std::vector<InnerSite> joint_sites_of(const FrameDescription& f, const measurement::Measurements& data) {
+std::vector<InnerSite> joint_sites_of(const FrameDescription& f, const measurement::Measurements& data,
+                                      const FrameNearby& nearby) {
   const std::vector<Listed> places = listed_joints(f);
-  const std::optional<frame::Passages> known = passages_at(places, f, data, FrameNearby(f, data));
+  const std::optional<frame::Passages> known = passages_at(places, f, data, nearby);
   std::vector<InnerSite> out;
   for (std::size_t i = 0; known && i < places.size(); ++i)
     if (known->gives[i]) out.push_back(site_of(places[i], as_index(i), *known, f.load_gain));

@@ -10,8 +10,8 @@ namespace deflect::subject {
 /// laws that are not linear.
 InnerSites inner_sites_of(const frame::FrameDescription&, const measurement::Measurements&, const FrameNearby&);
 
-/// Where the parts of a frame are joined: the bending freedoms of each member end that is not free to turn, and each
-/// spring. They are not told whether they are determinate. None where a law is not linear.
-std::vector<InnerSite> joint_sites_of(const frame::FrameDescription&, const measurement::Measurements&);
+/// Standing::joint_sites().
+std::vector<InnerSite> joint_sites_of(const frame::FrameDescription&, const measurement::Measurements&,
+                                      const FrameNearby&);
 
 }  // namespace deflect::subject

@@ -42,7 +42,7 @@ struct Site {
 /// stiffnesses are, and a deformation there strains nothing.
 struct InnerSite {
   std::string name;  ///< "C1b", "support P0a ux"
-  Place place;       ///< a member, of which this is the axial force; a held freedom of a support
+  Place place;       ///< a member, of which this is the axial force; a held freedom of a support; a joint_sites()
   bool rotation = false;
   VectorX per_load;  ///< by load channel
   VectorX moves;     ///< by sensor: what is recorded, by unit deformation
@@ -134,6 +134,9 @@ class Standing {
   virtual std::vector<Site> sites(std::size_t) const { return {}; }
   /// Those of a subject without tool point; none where forces are not proportional to the loads.
   virtual InnerSites inner_sites(const measurement::Measurements&) const { return {}; }
+  /// Where the parts of a frame are joined: the bending freedoms of each member end that is not free to turn, and each
+  /// spring; not told whether they are determinate. None where a law is not linear.
+  virtual std::vector<InnerSite> joint_sites(const measurement::Measurements&) const { return {}; }
   /// Of a frame whose laws are linear.
   virtual std::vector<NodeMotion> node_motions(const measurement::Measurements&) const { return {}; }
 
