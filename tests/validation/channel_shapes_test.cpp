@@ -2,6 +2,7 @@
 // sensor.
 #include "validation/compare/channel_shapes.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "msa/frame/file/frame_file.h"
@@ -80,6 +82,25 @@ TEST(ChannelShapes, AreThoseOfTheDefinition) {
   EXPECT_EQ(all.at("force").cols(), 7);  // no other reads a force
 }
 
+/// The diagnosis of a frame in which an effect is hidden that is not among the candidates.
+struct Unnamed {
+  Unnamed(const std::string& name, const std::string& effect, double value, const std::string& campaign)
+      : subject(frame::read_frame(std::filesystem::path(test::source_dir()) / "validation/frames" / (name + ".yaml"))),
+        known(test::all_effects()) {
+    for (effects::Effect& e : effects::place_effects(subject, known)) known.push_back(std::move(e));
+    const effects::Effect hidden = effects::find_effect(known, effect);
+    std::erase_if(known, [&](const effects::Effect& e) { return e.name == effect; });
+    const Subject with = effects::with_effect(subject, {{&hidden, {}}, VectorX::Constant(1, value)});
+    data = subject::simulate_frame(*with.frame(), subject::frame_campaign(campaign, *subject.frame(), 1), {});
+    told = diagnosis::diagnose(subject, data, known, {{}, 199});
+  }
+
+  Subject subject;
+  std::vector<effects::Effect> known;
+  measurement::Measurements data;
+  diagnosis::Diagnosis told;  // its effects are among those known
+};
+
 // Without its entry a fault of a channel is unknown; what is told is the sensor, and no part of the frame is blamed.
 TEST(ChannelShapes, AFaultThatNoEntryDescribesIsToldAtItsSensor) {
   struct Case {
@@ -92,16 +113,8 @@ TEST(ChannelShapes, AFaultThatNoEntryDescribesIsToldAtItsSensor) {
                         {"lattice-girder", "crosstalk@R_r4.R_l0", 0.04, "R_r4"},
                         {"portal-semi-rigid", "gain@mid_z", 0.9, "mid_z"},
                         {"portal-semi-rigid", "stiction@turn_C", 2e-5, "turn_C", "cycle"}}) {
-    const Subject s = frame::read_frame(std::filesystem::path(test::source_dir()) / "validation/frames" /
-                                        (std::string(c.frame) + ".yaml"));
-    std::vector<effects::Effect> all = test::all_effects();
-    for (effects::Effect& e : effects::place_effects(s, all)) all.push_back(std::move(e));
-    const effects::Effect hidden = effects::find_effect(all, c.effect);
-    std::erase_if(all, [&](const effects::Effect& e) { return e.name == c.effect; });
-    const Subject with = effects::with_effect(s, {{&hidden, {}}, VectorX::Constant(1, c.value)});
-    const measurement::Measurements data =
-        subject::simulate_frame(*with.frame(), subject::frame_campaign(c.campaign, *s.frame(), 1), {});
-    const diagnosis::Diagnosis d = diagnosis::diagnose(s, data, all, {{}, 199});
+    const Unnamed u(c.frame, c.effect, c.value, c.campaign);
+    const diagnosis::Diagnosis& d = u.told;
     EXPECT_TRUE(d.unexplained) << c.effect;
     ASSERT_FALSE(d.localised.empty()) << c.effect;
     EXPECT_EQ(subject::sensor_of(d.localised.front().place), c.sensor);
@@ -111,6 +124,18 @@ TEST(ChannelShapes, AFaultThatNoEntryDescribesIsToldAtItsSensor) {
     EXPECT_EQ(told.at("path"), std::string("sensors.") + c.sensor);
     for (const effects::PlacedEffect& e : d.missing)
       EXPECT_TRUE(e.effect->place && subject::sensor_of(*e.effect->place) == c.sensor) << e.effect->name;
+  }
+}
+
+// A sensor that lags does nearly what friction at its node does, to itself alone. No part of the frame is blamed for
+// it.
+TEST(ChannelShapes, ASensorThatSticksIsToldAsThat) {
+  for (const auto& [sensor, band] : {std::pair("S_left", 4.0), {"top_x", 0.03}}) {
+    const Unnamed u("portal-semi-rigid", std::string("stiction@") + sensor, band, "cycle");
+    EXPECT_EQ(u.told.verdict, diagnosis::Verdict::unknown_effect);
+    EXPECT_TRUE(u.told.missing.empty()) << u.told.missing.front().effect->name;
+    ASSERT_EQ(u.told.localised.size(), 1u) << sensor;
+    EXPECT_EQ(u.told.localised.front().what, fmt::format("sensor {}, which sticks", sensor));
   }
 }
 

@@ -38,18 +38,19 @@ VectorX time_of(const std::vector<std::size_t>& order) {
   return out;
 }
 
+VectorX predicted_of(const ResidualStudy& s, std::size_t channel) {
+  VectorX p(std::ssize(s.predicted));
+  for (std::size_t i = 0; i < s.predicted.size(); ++i) p(as_index(i)) = s.predicted[i](as_index(6 + channel));
+  return p;
+}
+
 /// By reading.
 MatrixX shapes_of(const ResidualStudy& s, std::size_t channel, const std::vector<std::size_t>& order) {
   const std::vector<measurement::SensorChannel>& sensors = s.data->instruments.sensors;
-  const auto readings_of = [&](std::size_t c) {
-    VectorX p(std::ssize(s.predicted));
-    for (std::size_t i = 0; i < s.predicted.size(); ++i) p(as_index(i)) = s.predicted[i](as_index(6 + c));
-    return p;
-  };
-  const VectorX p = readings_of(channel);
+  const VectorX p = predicted_of(s, channel);
   std::vector<MatrixX> out = {VectorX::Ones(p.size()), p.cwiseAbs(), p};
   for (std::size_t other = 0; other < sensors.size(); ++other)
-    if (other != channel && sensors[other].quantity == sensors[channel].quantity) out.push_back(readings_of(other));
+    if (other != channel && sensors[other].quantity == sensors[channel].quantity) out.push_back(predicted_of(s, other));
   if (!order.empty()) out.push_back(time_of(order));
   for (const double share : lags)
     if (!order.empty()) out.push_back(lag(*s.data, order, p, share * p.cwiseAbs().maxCoeff()));
@@ -76,6 +77,14 @@ MatrixX shapes_of_motion(const ResidualStudy& s) {
   return out;
 }
 
+/// Of a channel, rows by measured number.
+MatrixX in_channel(const ResidualStudy& s, std::size_t c, const MatrixX& by_reading) {
+  MatrixX out = MatrixX::Zero(std::ssize(s.values), by_reading.cols());
+  for (std::size_t i = 0; i < s.values.size(); ++i)
+    if (s.values[i].channel == 6 + c) out.row(as_index(i)) = by_reading.row(as_index(s.values[i].reading));
+  return out;
+}
+
 MatrixX without_zeros(const MatrixX& columns) {
   std::vector<Eigen::Index> kept;
   for (Eigen::Index k = 0; k < columns.cols(); ++k)
@@ -91,13 +100,28 @@ std::map<std::string, MatrixX> channel_shapes(const ResidualStudy& s) {
   std::map<std::string, MatrixX> out;
   for (std::size_t c = 0; c < s.data->instruments.sensors.size(); ++c) {
     const MatrixX all = shapes_of(s, c, order);
-    MatrixX rows = MatrixX::Zero(std::ssize(s.values), all.cols());
-    for (std::size_t i = 0; i < s.values.size(); ++i)
-      if (s.values[i].channel == 6 + c) rows.row(as_index(i)) = all.row(as_index(s.values[i].reading));
-    out[s.data->instruments.sensors[c].name] = without_zeros(rows);
+    out[s.data->instruments.sensors[c].name] = without_zeros(in_channel(s, c, all));
   }
   if (MatrixX motion = without_zeros(shapes_of_motion(s)); motion.cols() > 0) out.emplace("sensor", std::move(motion));
   return out;
+}
+
+bool may_lag(const ResidualStudy& s, const std::string& sensor) {
+  const auto& all = s.data->instruments.sensors;
+  return s.sequence && std::ranges::find(all, sensor, &measurement::SensorChannel::name) != all.end();
+}
+
+MatrixX lags_of_channel(const ResidualStudy& s, const std::string& sensor) {
+  constexpr int bands = 16;
+  if (!may_lag(s, sensor)) return MatrixX(std::ssize(s.values), 0);
+  const std::vector<std::size_t> order = measurement::in_sequence(*s.data, "the lag of a sensor");
+  const auto& all = s.data->instruments.sensors;
+  const auto c = as_size(std::ranges::find(all, sensor, &measurement::SensorChannel::name) - all.begin());
+  const VectorX p = predicted_of(s, c);
+  std::vector<MatrixX> out;
+  for (int i = 1; i <= bands; ++i)
+    out.push_back(lag(*s.data, order, p, std::pow(0.5, 0.5 * i) * p.cwiseAbs().maxCoeff()));
+  return without_zeros(in_channel(s, c, statistics::side_by_side(out, p.size())));
 }
 
 }  // namespace deflect::compare

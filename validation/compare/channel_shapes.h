@@ -21,4 +21,11 @@ namespace deflect::compare {
 /// other axes, u and θ of other scales, e along x, y and z. A column that is zero is left out.
 std::map<std::string, MatrixX> channel_shapes(const ResidualStudy&);
 
+/// Whether the order of the readings is known and this is one of the named sensors.
+bool may_lag(const ResidualStudy&, const std::string& sensor);
+/// In the same rows: p less what the sensor shows if it follows only where it lags by more than a band, for sixteen
+/// bands, each 0.7 of the one before, from 0.7 of its largest |p|. A column that is zero is left out; none where it may
+/// not lag.
+MatrixX lags_of_channel(const ResidualStudy&, const std::string& sensor);
+
 }  // namespace deflect::compare

@@ -199,7 +199,10 @@ std::string words_of(const AtPlace& p) {
   if (!p.best || p.most().rubs) {
     subject::Place place = p.place();
     place.leg = p.best ? p.best->effect.leg : p.without_law->leg;
-    return effects::words_of(place) + (p.most().rubs ? ", where something rubs" : ", by none of the laws");
+    const bool reads = !subject::sensor_of(place).empty();
+    return effects::words_of(place) + (!p.most().rubs ? ", by none of the laws"
+                                       : reads        ? ", which sticks"
+                                                      : ", where something rubs");
   }
   const effects::PlacedEffect& e = p.best->effect;
   std::string out = e.effect->title;

@@ -114,6 +114,8 @@ AnyCurve WhateverTheLaw::curve_at(const effects::PlacedEffect& e, std::shared_pt
 
 Columns WhateverTheLaw::friction_at(const subject::Place& place, std::optional<int> leg,
                                     std::shared_ptr<const Observations> o) const {
+  if (const std::string sensor = subject::sensor_of(place); compare::may_lag(o->comparison().study, sensor))
+    return [sensor, o = std::move(o)] { return as_seen(*o, compare::lags_of_channel(o->comparison().study, sensor)); };
   if (!changes_->may_be_held(place)) return nullptr;
   return [changes = changes_, place, leg, o = std::move(o)] {
     return as_seen(*o, any_friction(*changes, place, leg, std::ssize(o->comparison().study.values)));

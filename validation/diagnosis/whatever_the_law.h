@@ -31,7 +31,8 @@ class WhateverTheLaw {
   /// Any curve of deflection over force where an effect acts (Changes::by_any_curve()); null where the
   /// forces are not known.
   AnyCurve curve_at(const effects::PlacedEffect&, std::shared_ptr<const Observations>) const;
-  /// Any friction beside what is there; null where it is not known what that does (Changes::may_be_held()).
+  /// Any friction beside what is there, in a sensor any lag (lags_of_channel()); null where it is not known what that
+  /// does (Changes::may_be_held()).
   Columns friction_at(const subject::Place&, std::optional<int> leg, std::shared_ptr<const Observations>) const;
   const std::vector<subject::NodeMotion>& node_motions() const { return changes_->node_motions(); }
 
