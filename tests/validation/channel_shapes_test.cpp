@@ -136,6 +136,7 @@ TEST(ChannelShapes, ASensorThatSticksIsToldAsThat) {
     EXPECT_TRUE(u.told.missing.empty()) << u.told.missing.front().effect->name;
     ASSERT_EQ(u.told.localised.size(), 1u) << sensor;
     EXPECT_EQ(u.told.localised.front().what, fmt::format("sensor {}, which sticks", sensor));
+    EXPECT_EQ(u.told.localised.front().effect, nullptr);  // none of the laws that are there
   }
 }
 

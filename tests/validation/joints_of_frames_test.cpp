@@ -53,23 +53,30 @@ VectorX small(const effects::Effect& e) {
   return VectorX::Constant(1, std::isinf(vanishes) ? 1e3 * start : vanishes + 1e-3 * (start - vanishes));
 }
 
-class JointsOfFrames : public ::testing::TestWithParam<const char*> {};
+class JointsOfFrames : public ::testing::TestWithParam<const char*> {
+ protected:
+  /// What a little of an effect does.
+  VectorX change_by(const effects::Effect& e) const {
+    return o.residual(effects::with_effect(subject, {{&e, {}}, small(e)})) - o.residual(subject);
+  }
+
+  const frame::FrameDescription drawn = built_in(GetParam());
+  const subject::Subject subject{drawn};
+  const measurement::Measurements data = read(subject, drawn);
+  const Observations o{subject, data, {}};
+  const Changes changes{o, {}, 1};
+  const std::vector<effects::Effect> all = test::effects_everywhere(subject);
+};
 
 // A spring in series, of small compliance c, moves its sides by c f under the force f of the drawn frame, up to terms
 // of the order of c times the stiffness around. A prediction with it says the same as the columns at its place.
 TEST_P(JointsOfFrames, ColumnsSpanWhatASpringInSeriesDoes) {
-  const frame::FrameDescription drawn = built_in(GetParam());
-  const subject::Subject subject(drawn);
-  const measurement::Measurements data = read(subject, drawn);
-  const Observations o(subject, data, {});
-  const Changes changes(o, {}, 1);
   const auto columns = whatever_columns(o, changes);
-  const std::vector<effects::Effect> all = test::effects_everywhere(subject);
   std::size_t looked = 0;
   for (const effects::Effect& e : all) {
     const bool linear = e.name.starts_with("linear@") || e.name.starts_with("factor@spring.");
     if (!e.place || !is_joint(*e.place) || !linear) continue;
-    const VectorX change = o.residual(effects::with_effect(subject, {{&e, {}}, small(e)})) - o.residual(subject);
+    const VectorX change = change_by(e);
     if (change.norm() == 0) continue;
     const auto here = columns.find(spot_of(*e.place, {}));
     ASSERT_NE(here, columns.end()) << e.name;
@@ -83,16 +90,10 @@ TEST_P(JointsOfFrames, ColumnsSpanWhatASpringInSeriesDoes) {
 // A contact flattens as f^(2/3), which is neither a spring nor a step. Sums of powers and lines that bend come as near
 // as 1.1e-3 of its norm, for contacts of any size: what is left is of the curve and not of the forces or the response.
 TEST_P(JointsOfFrames, AnyCurveSpansWhatAContactDoes) {
-  const frame::FrameDescription drawn = built_in(GetParam());
-  const subject::Subject subject(drawn);
-  const measurement::Measurements data = read(subject, drawn);
-  const Observations o(subject, data, {});
-  const Changes changes(o, {}, 1);
-  const std::vector<effects::Effect> all = test::effects_everywhere(subject);
   std::size_t looked = 0, groups = 0;
   for (const effects::Effect& e : all) {
     if (!e.place || !e.name.starts_with("contact@")) continue;
-    const VectorX change = o.residual(effects::with_effect(subject, {{&e, {}}, small(e)})) - o.residual(subject);
+    const VectorX change = change_by(e);
     if (change.norm() == 0) continue;
     ASSERT_TRUE(changes.knows_forces_at(*e.place)) << e.name;
     const MatrixX powers = changes.by_any_curve({&e, {}}, Curves::powers),

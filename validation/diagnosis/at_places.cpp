@@ -310,8 +310,8 @@ std::vector<Localised> localised(const std::vector<AtPlace>& places, double chi2
     if (out.size() == most || sum > together_told || p.most().gain < beyond_chance) break;
     sum += probability[i];
     out.push_back({p.place(), p.best ? p.best->effect.leg : p.without_law->leg,
-                   p.best ? p.best->effect.effect : nullptr, words_of(p), std::min(1.0, p.most().gain / beyond),
-                   probability[i]});
+                   p.best && !p.most().rubs ? p.best->effect.effect : nullptr, words_of(p),
+                   std::min(1.0, p.most().gain / beyond), probability[i]});
   }
   return out;
 }

@@ -84,7 +84,7 @@ double p_value(const std::vector<AtPlace>&);
 struct Localised {
   subject::Place place;
   std::optional<int> leg;
-  const effects::Effect* effect = nullptr;  ///< of the laws at the place the one that explains most; null without any
+  const effects::Effect* effect = nullptr;  ///< of the laws at the place the likeliest; null without any, or if it rubs
   std::string what;        ///< "the actuator rx of every leg yields like a spring", "forearm, by none of the laws"
   double share = 0;        ///< of χ² beyond noise and tolerances that the place can explain beside the fit
   double probability = 0;  ///< that it acts there and at no other place
